@@ -98,7 +98,7 @@ TEST(RayLeaks, ALampOutsideAClosedBoxReachesNoPointInside) {
       const Vec3 past_m = ((exit.at + beyond * (exit.at - from_at)).cwiseAbs() - Vec3::Ones()).cwiseProduct(box.half_m);
       // Within 2 e of a wall's plane a lamp counts as on that wall, which then lets its light pass.
       if (past_m.maxCoeff() < 0 || past_m.cwiseAbs().minCoeff() < 4 * rays.surface_error_m(to)) continue;
-      // Behind the surface or in its plane: never asked.
+      // Lamps behind the surface or in its plane are not tested.
       if (!in_the_air && normal.dot(to - from) < 8 * rays.surface_error_m(to)) continue;
       ++configurations;
       const bool at_edge = (exit.at.cwiseAbs().array() == 1).count() > 1;

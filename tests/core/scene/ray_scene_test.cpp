@@ -12,7 +12,7 @@
 namespace luxrig {
 namespace {
 
-/// Uniform directions and points from a fixed seed.
+/// The scene with one material for all its triangles.
 Scene with_materials(Scene scene) {
   scene.materials.resize(1);
   scene.material_of_triangle.assign(scene.triangles.size(), 0);

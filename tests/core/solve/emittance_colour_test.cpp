@@ -1,4 +1,4 @@
-// Goals of a colour, and a limit of power: against closed forms and against all active sets.
+// Goals with colour and a limit on power, compared with closed forms and with all active sets.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,7 +18,7 @@ using Eigen::VectorXd;
 
 const double kNoLimit = std::numeric_limits<double>::infinity();
 
-/// Lights of these colours; each gives `lux` at the points.
+/// Lights of these colours that give `lux` at the points.
 EmittanceProblem coloured_problem(const MatrixXd& lux, const std::vector<Vec3>& colours) {
   EmittanceProblem p;
   p.lux_per_level = lux;
@@ -61,7 +61,7 @@ TEST(EmittanceColour, ThreeEmittersOverAPointMixAnyColourBetweenThem) {
   }
 }
 
-// White light and goals of white: the same as without colour, goal by goal and with limits.
+// White light and white goals: same result as without colour, for single goals and with limits.
 TEST(EmittanceColour, InWhiteIsWhatItIsWithoutColour) {
   Random random(2);
   for (int trial = 0; trial < 30; ++trial) {
@@ -90,7 +90,7 @@ TEST(EmittanceColour, InWhiteIsWhatItIsWithoutColour) {
   }
 }
 
-/// W T and W g of the colour problem, as the header states it.
+/// W T and W g of the colour problem, as defined in the header.
 void rows_of(const EmittanceProblem& p, MatrixXd& A, VectorXd& b) {
   const Index points = p.lux_per_level.rows();
   A.resize(3 * points, p.lux_per_level.cols());
@@ -102,7 +102,7 @@ void rows_of(const EmittanceProblem& p, MatrixXd& A, VectorXd& b) {
     }
 }
 
-/// Least ‖A x − b‖² with each x at 0, at 1 or free, and the power row (where there is one) met or left alone.
+/// Least ‖A x − b‖² with each x at 0, at 1 or free, and the power limit (if any) active or not.
 double best_of_all_active_sets(const MatrixXd& A, const VectorXd& b, const VectorXd& watts, double max_watts) {
   const Index n = A.cols();
   double best = b.squaredNorm();
@@ -191,7 +191,7 @@ TEST(EmittancePower, SharesTheLimitAsLagrangeDoes) {
   EXPECT_NEAR(solution->level[1], 0.32, 1e-9);
   EXPECT_EQ(solution->points[1].binding, Binding::power);
   EXPECT_EQ(solution->points[1].reason, "held at 32 lx by the limit of 12 W on power, goal 80 lx");
-  p.max_watts = 24;  // what the goals take
+  p.max_watts = 24;  // exactly enough for the goals
   const auto enough = solve_emittance(p);
   ASSERT_TRUE(enough);
   EXPECT_NEAR(enough->level[0], 0.8, 1e-9);
@@ -220,7 +220,7 @@ TEST(EmittanceColour, SaysWhyAColourIsMissed) {
       << solution->points[0].reason;
   EXPECT_NE(solution->points[0].reason.find("goal 100 lx of xy (0.310, 0.570)"), std::string::npos)
       << solution->points[0].reason;
-  // Red at its highest level is what keeps the lux right and the colour wrong.
+  // Red at its highest level: the lux is right but the colour is wrong.
   p = coloured_problem(MatrixXd{{20, 200}}, {Vec3(kRgbLeds[0]), rgb_of_cct(4000)});
   p.light_name = {"par/red", "par/white"};
   p.goal_lx = VectorXd::Constant(1, 150);

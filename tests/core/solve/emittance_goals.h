@@ -1,5 +1,5 @@
 #pragma once
-/// What an EmittanceProblem asks for, worked out once more for the tests.
+/// Targets of an EmittanceProblem, computed independently for the tests.
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 namespace luxrig {
 
-/// What lights are asked to add at a point: nothing where there is more than the goal without them.
+/// Lux that the lights should add at a point; 0 where fixed light exceeds the goal.
 inline double missing_lx(const EmittanceProblem& p, Eigen::Index point) {
   return std::max(0.0, p.goal_lx[point] - p.fixed_lx[point]);
 }

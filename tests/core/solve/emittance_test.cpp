@@ -22,8 +22,8 @@ using Eigen::VectorXd;
 constexpr double kInf = std::numeric_limits<double>::infinity();
 const double kNone = std::numeric_limits<double>::quiet_NaN();
 
-/// Points × lights with goals, fixed light, weights, limits and highest levels; every fourth is degenerate (equal or
-/// zero columns and rows, lights without level, no room below a limit), every fifth in wild units.
+/// Random points and lights with goals, fixed light, weights, limits and highest levels. Every fourth is degenerate
+/// (equal or zero columns and rows, lights with highest level 0, no room below a limit), every fifth in extreme units.
 EmittanceProblem random_problem(int seed, Index max_points, Index max_lights) {
   std::mt19937 random(static_cast<unsigned>(seed));
   std::uniform_real_distribution<double> uniform;
@@ -70,7 +70,7 @@ double goals_squared(const EmittanceProblem& p) {
   return sum;
 }
 
-/// Within limits whatever the order in which the products are summed.
+/// Within limits in any order of summation.
 void expect_within_limits(const EmittanceProblem& p, const VectorXd& level, int seed) {
   for (Index j = 0; j < level.size(); ++j) {
     ASSERT_GE(level[j], 0) << "seed " << seed;
@@ -90,8 +90,8 @@ void expect_within_limits(const EmittanceProblem& p, const VectorXd& level, int 
   }
 }
 
-/// How far the negative gradient is from the cone of the active constraints' normals (Farkas), relative to the
-/// columns' norms times that of the right-hand side. Independent of the multipliers that the solver computes.
+/// Distance of the negative gradient from the cone of the active constraints' normals (Farkas), relative to the
+/// columns' norms times that of the right-hand side. Independent of the solver's multipliers.
 double kkt_violation(const EmittanceProblem& p, const VectorXd& level) {
   const Index n = level.size();
   const double right = std::sqrt(goals_squared(p));
@@ -122,7 +122,7 @@ double kkt_violation(const EmittanceProblem& p, const VectorXd& level) {
   return solve_nnls(cone, wanted).residual_norm;
 }
 
-/// Least objective over every choice of active constraints, each solved as an equality-constrained problem.
+/// Least objective over all choices of active constraints, each solved as an equality-constrained problem.
 double enumerated_objective(const EmittanceProblem& p) {
   const Index n = p.lux_per_level.cols();
   std::vector<Index> goals, limits;
@@ -200,7 +200,7 @@ TEST(Emittance, MeetsTheKktConditionsOnAThousandProblems) {
 
 TEST(Emittance, FindsWhatEnumeratingAllActiveSetsFinds) {
   for (int seed = 0; seed < 600; ++seed) {
-    if (seed % 5 == 4) continue;  // the reference does not scale
+    if (seed % 5 == 4) continue;  // the reference cannot handle extreme units
     const EmittanceProblem p = random_problem(seed, 4, 3);
     const auto solution = solve_emittance(p);
     ASSERT_TRUE(solution) << solution.error().detail;
@@ -258,7 +258,7 @@ TEST(Emittance, APointThatDaylightOverfillsHoldsNoOtherDown) {
   p.max_lx = VectorXd::Constant(2, kInf);
   const auto solution = solve_emittance(p);
   ASSERT_TRUE(solution) << solution.error().detail;
-  // The first is bright whatever happens; the second gets its goal, but for what spills over to the first.
+  // The first point is too bright in any case. The second gets its goal, less a trifle because of spill on the first.
   EXPECT_NEAR(solution->points[1].lux, 150, 0.02);
   EXPECT_LT(solution->level[0], 1e-9);
   EXPECT_NE(solution->points[0].reason.find("5000 lx are there with all its lights off"), std::string::npos)

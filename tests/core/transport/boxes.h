@@ -1,5 +1,5 @@
 #pragma once
-/// Boxes of triangles, for rooms and what stands in them.
+/// Boxes made of triangles, for rooms and the objects in them.
 
 #include <array>
 

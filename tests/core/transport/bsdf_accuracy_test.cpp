@@ -11,7 +11,7 @@ namespace {
 
 using namespace bsdf_fixture;
 
-// The coat takes Es of the light and the body ρ of the rest: what goes in and is not absorbed comes out.
+// The coat reflects Es, the body reflects ρ of the rest. All light that is not absorbed comes out.
 TEST(Bsdf, ReflectsTheCoatsShareAndTheBodysOfTheRest) {
   for (const double roughness : {0.3, 0.6, 1.0})
     for (const double specular : {0.04, 0.5}) {
@@ -31,7 +31,7 @@ TEST(Bsdf, SamplesByTheDensityItStates) {
     const Bsdf bsdf(glossy(0.2, roughness, 0.5));
     for (const double cosine : kCosines) {
       const Vec3 out = direction(cosine, 1);
-      // The mean of a function over samples is its integral times density: here cos³ and the albedo.
+      // The mean of a function over samples is the integral of function times density: here for cos³ and the albedo.
       double mean = 0, albedo = 0, expected = 0;
       constexpr int kSamples = 200'000;
       for (int i = 0; i < kSamples; ++i) {

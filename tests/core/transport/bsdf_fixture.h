@@ -17,7 +17,7 @@ inline Vec3 direction(double cosine, double angle_rad) {
   return {sine * std::cos(angle_rad), sine * std::sin(angle_rad), cosine};
 }
 
-/// ∫ f cosθ dω over the hemisphere by a fine grid in cosine and angle, apart from all sampling.
+/// ∫ f cosθ dω over the hemisphere on a fine grid in cosine and angle. Uses no sampling.
 inline double brute_albedo(const Bsdf& bsdf, const Vec3& out) {
   constexpr int kCosines = 1000, kAngles = 1000;
   double sum = 0;

@@ -33,7 +33,7 @@ TEST(Bsdf, IsReciprocal) {
   }
 }
 
-// A coat that absorbs nothing sends all on, however rough: what one facet throws on another is not lost.
+// A coat that absorbs nothing reflects everything, however rough: light that bounces between facets is not lost.
 TEST(Bsdf, ACoatThatReflectsAllLosesNothing) {
   for (const double roughness : {0.3, 0.6, 1.0})
     for (const double cosine : kCosines)

@@ -31,13 +31,13 @@ inline double rectangle_form(double x0_m, double x1_m, double y0_m, double y1_m,
   return polygon_form({{x0_m, y0_m, z_m}, {x1_m, y0_m, z_m}, {x1_m, y1_m, z_m}, {x0_m, y1_m, z_m}}, p, n);
 }
 
-/// Disk of radius r that faces a receiver at distance h of its plane and a of its axis.
+/// Disk of radius r, parallel to the receiver: distance h to the disk's plane, distance a to its axis.
 inline double parallel_disk_form(double r, double h, double a) {
   const double s = h * h + a * a + r * r;
   return kPi / 2 * (1 - (h * h + a * a - r * r) / std::sqrt(s * s - 4 * a * a * r * r));
 }
 
-/// Sphere above the horizon wholly: π (R/d)² cos β. Partly: J. R. Howell's catalogue, configuration factor B-43.
+/// Sphere fully above the horizon: π (R/d)² cos β. Partly: J. R. Howell's catalogue, configuration factor B-43.
 inline double sphere_form(double radius, double distance, double cos_beta) {
   const double h = distance / radius, beta = std::acos(cos_beta);
   if (cos_beta * h >= 1) return kPi * cos_beta / (h * h);

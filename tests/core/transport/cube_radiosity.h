@@ -1,5 +1,5 @@
 #pragma once
-/// An independent answer for diffuse light in a cube: patches, exact form factors from points, no sampling.
+/// Independent reference for diffuse light in a cube: patches with exact form factors from points, no sampling.
 
 #include <array>
 #include <cmath>
@@ -9,8 +9,8 @@
 
 namespace luxrig {
 
-/// Reflected illuminance in the cube [-edge/2, edge/2]³ of one reflectance around an isotropic point source. Reflected
-/// light is constant on each patch; direct light, which varies more, on each of 4×4 parts of a patch.
+/// Reflected illuminance in the cube [-edge/2, edge/2]³ of uniform reflectance around an isotropic point source.
+/// Reflected light is constant on each patch. Direct light varies more: it is constant on each of 4×4 parts of a patch.
 class CubeRadiosity {
  public:
   CubeRadiosity(double edge_m, double reflectance, double flux_lm, const Vec3& source_m, int patches_per_edge)
@@ -79,8 +79,8 @@ class CubeRadiosity {
     return candela_ * part.normal.dot(towards_m) / std::pow(towards_m.norm(), 3);
   }
 
-  /// Lambert's formula: share of a point's hemisphere, cosine-weighted, that a polygon fills. In a cube no polygon is
-  /// cut by the horizon; one in the point's own plane fills nothing.
+  /// Lambert's formula: cosine-weighted share of a point's hemisphere that a polygon fills. In a cube the horizon clips
+  /// no polygon; a polygon in the point's own plane fills nothing.
   static double form_factor(const Vec3& position_m, const Vec3& normal, const Patch& patch) {
     if (normal.dot(patch.centre_m - position_m) <= 1e-9) return 0;
     const std::array<Vec3, 4> corners_m = {patch.corner_m, patch.corner_m + patch.u_m,

@@ -1,5 +1,5 @@
 #pragma once
-/// A luminaire whose light has a closed form from any place: the flat diffuser.
+/// Flat diffuser: a luminaire whose light has a closed form at any place.
 
 #include <cmath>
 #include <memory>

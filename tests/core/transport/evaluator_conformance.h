@@ -1,6 +1,6 @@
 #pragma once
-/// Requirements for every evaluator, whatever its method. A new one is a line in the table of a program that includes
-/// this.
+/// Requirements for every evaluator, whatever its method. To test a new one, add a line to the table of a program that
+/// includes this header.
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ struct Entry {
 
 inline void PrintTo(const Entry& entry, std::ostream* out) { *out << entry.name; }
 
-/// A room with a pillar, lamps and receivers, which can be moved, turned, mirrored and scaled as a whole.
+/// A room with a pillar, lamps and receivers. It can be moved, turned, mirrored and scaled as a whole.
 struct Room {
   std::vector<Vec3> vertices_m;
   std::vector<std::array<std::uint32_t, 3>> triangles;
@@ -52,7 +52,7 @@ struct Room {
     return s;
   }
 
-  /// point -> scale · linear · point + shift; `linear` orthogonal, mirrors allowed (the lamps are round).
+  /// point -> scale · linear · point + shift. `linear` is orthogonal and may mirror (the lamps are round).
   Room transformed(const Mat3& linear, double scale, const Vec3& shift_m) const {
     Room other = *this;
     const Mat3 handed = linear.determinant() < 0 ? Mat3(Vec3(-1, 1, 1).asDiagonal()) : Mat3(Mat3::Identity());
@@ -97,7 +97,7 @@ class EvaluatorConformance : public testing::TestWithParam<Entry> {
     EXPECT_TRUE(result.has_value()) << (result ? "" : result.error().detail);
     return result ? *result : TransportMatrix{};
   }
-  /// a = factor · b, within four standard errors of both and what rounding coordinates to float may change.
+  /// a = factor · b within four standard errors of both, plus the effect of rounding coordinates to float.
   static void expect_same_light(const TransportMatrix& a, const TransportMatrix& b, double factor = 1) {
     ASSERT_EQ(a.receivers(), b.receivers());
     ASSERT_EQ(a.emitters(), b.emitters());
@@ -142,7 +142,7 @@ TEST_P(EvaluatorConformance, LuxIsLinearInLevelsAndAFreshEvaluationAgrees) {
   auto options = quick();
   options.levels = {0.2, 0, 0.7};
   options.seed = 99;
-  expect_same_light(ones, matrix(room, options));  // levels steer the effort, not the matrix
+  expect_same_light(ones, matrix(room, options));  // levels change the effort, not the matrix
   const Eigen::Vector3d a(0.2, 0, 0.7), b(0.1, 0.9, 0.3);
   EXPECT_LT((ones.lux(a + 2 * b) - ones.lux(a) - 2 * ones.lux(b)).norm(), 1e-12 * ones.lux(a).norm());
 }
@@ -192,7 +192,7 @@ TEST_P(EvaluatorConformance, LuxFallsWithTheSquareOfTheScaleFromMillimetresToKil
 
 TEST_P(EvaluatorConformance, AReceiverThatFacesAwayFromEverythingIsDark) {
   Room room = furnished_room();
-  room.triangles.clear();  // no walls to reflect
+  room.triangles.clear();  // no walls, so no reflections
   room.receivers = {{{0, 0, 0}, -Vec3::UnitZ()}};
   const auto m = matrix(room);
   EXPECT_EQ(m.lux_per_level.cwiseAbs().maxCoeff(), 0);
@@ -280,7 +280,7 @@ TEST_P(EvaluatorConformance, CoincidentPointsAndLampsGetEqualLight) {
   room.receivers = {room.receivers[0], room.receivers[0]};
   room.emitters = {room.emitters[2], room.emitters[2]};
   const auto m = matrix(room);
-  // Of one lamp less the other, where there is no true difference, only noise is left.
+  // The difference of two lamps with no true difference contains only noise.
   const Eigen::VectorXd difference_error_lx = m.standard_error_lux(Eigen::Vector2d(1, -1));
   EXPECT_EQ(m.direct_lux_per_level.col(0), m.direct_lux_per_level.col(1));
   for (Eigen::Index r = 0; r < 2; ++r)

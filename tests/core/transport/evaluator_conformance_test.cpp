@@ -1,4 +1,4 @@
-/// The evaluators that commands reach. A new one is a line in kEvaluators.
+/// Tests the evaluators that commands can reach. For a new one, add a line to kEvaluators.
 #include "tests/core/transport/evaluator_conformance.h"
 
 namespace luxrig::conformance {

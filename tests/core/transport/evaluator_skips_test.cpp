@@ -1,4 +1,4 @@
-/// Skips of evaluators change no result by more than its stated error, in furnished rooms.
+/// In furnished rooms the skips of evaluators change no result by more than its stated error.
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ TEST(DirectSkips, LightIsThatOfAShadowRayForEveryPair) {
     const auto got = make_direct_evaluator(rays)->evaluate(room.receivers, room.emitters, {});
     ASSERT_TRUE(got);
     const auto pairs = static_cast<std::uint64_t>(got->lux_per_level.size());
-    // Bare lamps above receivers that all look up leave nothing to skip; spots do.
+    // Bare lamps above receivers that all look up leave nothing to skip. Spots do.
     EXPECT_LE(got->rays, pairs) << room.name;
     if (room.name == "gallery") {
       EXPECT_LT(got->rays, pairs / 2) << room.name;
@@ -68,11 +68,11 @@ TEST(DirectSkips, WaysProvenClearOrBlockedSampleAsTheyAreProven) {
   }
 }
 
-// Seven lamps beyond a closed wall: their columns are dark, and those of the first lamp move within their errors.
+// Seven lamps beyond a closed wall: their columns are dark, and the first lamp's columns move within their errors.
 TEST(PathSkips, LampsThatMatterToNoReceiverCostFewRaysAndMoveNothingBeyondItsError) {
   const LitRoom room = make_box_room();
   Scene scene = room.scene;
-  // A closed box far above the room, with lamps in it.
+  // A closed box with lamps in it, far above the room.
   const Scene cube = make_cube(2, 0.7);
   const auto first = static_cast<std::uint32_t>(scene.vertices_m.size());
   for (const Vec3f& v : cube.vertices_m) scene.vertices_m.push_back(v + Vec3f(2, 1.5f, 9));

@@ -15,7 +15,7 @@ namespace {
 
 using namespace glass_fixture;
 
-/// Double precision, analytic walls, one lamp asked at each bounce: slow, and shares nothing with the evaluators.
+/// Double precision, analytic walls, the lamp sampled at each bounce. Slow; shares no code with the evaluators.
 class RandomWalk {
  public:
   RandomWalk(double reflectance, double pane_z_m, double transmittance, const Vec3& lamp_m)
@@ -33,7 +33,7 @@ class RandomWalk {
         const double r = std::sqrt(uniform(random)), phi = 2 * kPi * uniform(random);
         const Vec3 x = normal.unitOrthogonal(), y = normal.cross(x);
         const Vec3 way = r * std::cos(phi) * x + r * std::sin(phi) * y + std::sqrt(1 - r * r) * normal;
-        // To the nearest of the six walls.
+        // Distance to the nearest of the six walls.
         double nearest = HUGE_VAL;
         Vec3 wall;
         for (int axis = 0; axis < 3; ++axis) {

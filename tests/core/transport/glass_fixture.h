@@ -7,7 +7,7 @@ namespace luxrig::glass_fixture {
 
 inline constexpr double kHalf_m = 1.5;
 
-/// A pane right across the cube.
+/// A pane across the whole cube.
 inline std::vector<Pane> pane_at(double z_m, double transmittance) {
   const Vec3 a(-2, -2, z_m), b(2, -2, z_m), c(2, 2, z_m), d(-2, 2, z_m);
   return {{{a, b, c}, transmittance, 0}, {{a, c, d}, transmittance, 0}};

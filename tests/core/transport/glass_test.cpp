@@ -1,4 +1,4 @@
-// Light through panes: every evaluator that knows them against closed forms and an independent random walk.
+// Light through panes: evaluators that support them, compared with closed forms and an independent random walk.
 #include <gtest/gtest.h>
 
 #include "core/transport/candidates/incremental_transport.h"
@@ -26,7 +26,7 @@ TEST(Glass, ThatTakesNothingChangesNothing) {
 }
 
 TEST(Glass, DimsWhatHasSizeAndWhatStandsInTheOpen) {
-  // Nothing but a pane: no triangle stops a ray, and light is weighed all the same.
+  // Only a pane: no triangle stops a ray, yet the light is dimmed.
   Scene scene;
   scene.panes = pane_at(1, 0.8);
   const RayScene rays(scene);
@@ -37,7 +37,7 @@ TEST(Glass, DimsWhatHasSizeAndWhatStandsInTheOpen) {
   const auto bare = make_direct_evaluator(RayScene(Scene{}))->evaluate(below, lamps, within(1e-3));
   ASSERT_TRUE(lit && bare);
   EXPECT_NEAR(lit->lux_per_level(0, 0), 0.8 * bare->lux_per_level(0, 0), 1e-9 * bare->lux_per_level(0, 0));
-  // Seen within 2° of head-on, where glass is as it is head-on.
+  // Seen within 2° of the normal, where the transmittance is nearly that at normal incidence.
   EXPECT_NEAR(lit->lux_per_level(0, 1), 0.8 * bare->lux_per_level(0, 1), 3e-3 * bare->lux_per_level(0, 1));
 }
 

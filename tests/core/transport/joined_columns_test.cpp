@@ -1,4 +1,4 @@
-/// Columns of two matrices as one, with the errors that follow from both.
+/// Joining the columns of two matrices, with errors that follow from both.
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 namespace luxrig {
 namespace {
 
-/// A column of 10 lx and 100 lx; replicates `off` above and below.
+/// A column of 10 lx and 100 lx, with replicates `off` above and below.
 TransportMatrix column(double off) {
   TransportMatrix matrix;
   matrix.lux_per_level = Eigen::MatrixXd{{10}, {100}};
@@ -18,7 +18,7 @@ TransportMatrix column(double off) {
   return matrix;
 }
 
-/// Of the mean of 16 values that are `off` above and below it.
+/// Error of the mean of 16 values that lie `off` above and below it.
 double error_of(double off) {
   std::vector<double> values;
   for (int k = 0; k < 16; ++k) values.push_back(k % 2 == 0 ? off : -off);
@@ -35,7 +35,7 @@ TEST(JoinedColumns, StandInTheirPlacesWithTheErrorsOfTheirSum) {
   EXPECT_EQ(both.replicates[0].col(0), anew.replicates[0].col(0));
   EXPECT_EQ(both.replicates[0].col(1), known.replicates[0].col(0));
   EXPECT_EQ(both.direct_lux_per_level, (Eigen::MatrixXd{{5, 5}, {50, 50}}));
-  // 15 lx and 150 lx, each by 2.5 lx off, in step.
+  // 15 lx and 150 lx, both off by 2.5 lx in step.
   EXPECT_NEAR(both.relative_error, error_of(2.5) / 15, 1e-12);
   EXPECT_NEAR(both.rms_error, std::sqrt((1.0 / (15 * 15) + 1.0 / (150 * 150)) / 2) * error_of(2.5), 1e-12);
 }

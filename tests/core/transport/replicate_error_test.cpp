@@ -37,7 +37,7 @@ TEST(ReplicateError, TwoErrorsCoverNinetyFivePercentOfNormalMeans) {
 TEST(ReplicateError, OfTheMatrixKeepsTheCorrelationBetweenColumns) {
   TransportMatrix matrix;
   matrix.lux_per_level = Eigen::MatrixXd::Constant(1, 2, 10);
-  for (int k = 0; k < 16; ++k) {  // what one column gains the other loses
+  for (int k = 0; k < 16; ++k) {  // one column gains as much as the other loses
     const double d = k % 2 ? 1 : -1;
     matrix.replicates.push_back((Eigen::MatrixXd(1, 2) << 10 + d, 10 - d).finished());
   }

@@ -9,8 +9,8 @@
 namespace luxrig {
 namespace {
 
-// First points of the sequence in Joe and Kuo's order of dimensions, without Gray code: from the direction numbers
-// v = m/2^k worked by hand.
+// First points of the sequence in Joe and Kuo's order of dimensions, without Gray code. Worked by hand from the
+// direction numbers v = m/2^k.
 TEST(Sobol, StartsWithTheKnownPoints) {
   const double expected[4][4] = {
       {0, 0, 0, 0}, {0.5, 0.5, 0.5, 0.5}, {0.25, 0.75, 0.75, 0.75}, {0.75, 0.25, 0.25, 0.25}};
@@ -60,8 +60,8 @@ TEST(Sobol, APairIsTheSameWhetherAskedAloneOrInItsSet) {
   }
 }
 
-// Unbiased: the mean over keys of the mean of few points is the integral. 4000 keys × 4 points of f = x²y on pairs of
-// different sets: standard deviation of one mean measured, the mean must lie within 4 of its standard errors.
+// Unbiased: the mean over keys of small-sample means is the integral. 4000 keys × 4 points of f = x²y on pairs of
+// different sets. The mean must lie within 4 of its standard errors, from the measured standard deviation of one mean.
 TEST(Sobol, ScramblesAreUnbiasedAndSetsAreIndependent) {
   const auto check = [](const auto& f, double truth) {
     double sum = 0, squares = 0;
@@ -103,7 +103,7 @@ TEST(Sobol, ErrorOfASmoothIntegralFallsFasterThanWithRandomPoints) {
     }
     return std::sqrt(squares);
   };
-  // Random points gain a factor of 8 for 64 times the samples; a scrambled net of a smooth function about 64^1.5.
+  // With 64 times the samples, random points gain a factor of 8; a scrambled net of a smooth function about 64^1.5.
   EXPECT_LT(error_with(4096), error_with(64) / 100);
 }
 

@@ -1,5 +1,5 @@
-// Under an even sky, a basin that absorbs nothing is as bright as the sky, wherever one looks: a white furnace. It
-// tells of light that is lost or made, by the model of gloss or on the way.
+// White furnace: under a uniform sky, a basin that absorbs nothing is as bright as the sky in every direction. It
+// reveals light lost or gained by the gloss model or along the way.
 #include <gtest/gtest.h>
 
 #include "core/photometry/sky.h"
@@ -11,7 +11,7 @@ namespace luxrig {
 namespace {
 
 constexpr double kLux = 10'000;
-constexpr int kEvenSky = 5;  ///< of CIE S 011
+constexpr int kEvenSky = 5;  ///< sky type in CIE S 011
 
 /// Floor and four walls of 2 m × 2 m × 1 m, open above.
 Scene basin(double body, double specular, double roughness) {
@@ -56,14 +56,14 @@ TEST_P(WhiteFurnace, IsAsBrightAsTheSkyAtAnyGlossAndRoughness) {
       for (Eigen::Index r = 0; r < error_lx.size(); ++r)
         EXPECT_NEAR(transport->lux_per_level(r, 0), kLux, 6 * error_lx[r])
             << "specular " << specular << " roughness " << roughness << " receiver " << r;
-      // All lean on the same hits of light, so their mean is known little better than each.
+      // All share the same light hits, so their mean is known little better than each value.
       EXPECT_NEAR(transport->lux_per_level.mean(), kLux, 3 * error_lx.mean())
           << "specular " << specular << " roughness " << roughness;
       if (specular == 0) break;
     }
 }
 
-// What looks down on it sees the sky by its gloss, which no lamp that is asked at random, and no hit of light, finds.
+// Receivers that look down on the plate see the sky in its gloss. Neither random light sampling nor light hits find it.
 TEST_P(WhiteFurnace, APlateMirrorsTheSkyAsItsModelSays) {
   Scene scene = basin(0.95, 0.04, 0.05);
   for (Vec3f& vertex : scene.vertices_m) vertex *= 5;
@@ -79,7 +79,7 @@ TEST_P(WhiteFurnace, APlateMirrorsTheSkyAsItsModelSays) {
     scene.materials[0].roughness = roughness;
     const Bsdf bsdf(scene.materials[0]);
     constexpr int kSteps = 1000;
-    double expected_lx = 0;  // mean by the cosine of all that it reflects; the plate fills all but 1e-5 of the view
+    double expected_lx = 0;  // cosine-weighted mean reflection; the plate fills all but 1e-5 of the view
     for (int i = 0; i < kSteps; ++i) {
       const double cosine = (i + 0.5) / kSteps, coat = bsdf.coat_albedo(cosine);
       expected_lx += kLux * 2 * cosine * (coat + 0.95 * (1 - coat)) / kSteps;

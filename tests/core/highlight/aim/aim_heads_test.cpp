@@ -79,7 +79,7 @@ TEST(HeadAims, LightsNothingThatItMayNot) {
   std::vector<HangingHead> heads = rail_of_heads(3);
   const auto free = relief.aims(heads)->solve();
   ASSERT_TRUE(free);
-  // The first head may not look where it would, nor near it.
+  // The first head may not point where it did, nor near it.
   ASSERT_GT(free->heads[0].setting.level, 0);
   const Vec3 forbidden = lamp_pose(heads[0], free->heads[0].setting.joints).direction({0, 0, -1});
   const double min_rad = rad_from_deg(6);
@@ -143,7 +143,7 @@ TEST(HeadAims, WeightsDoWhatTheySay) {
   AimWishes even;
   even.base_lx = usual.mean_lx;
   even.base_weight = 3;
-  AimWishes told = even;  // the same measure without the weight
+  AimWishes told = even;  // same measure, without the weight
   told.base_weight = 0;
   EXPECT_LT(solved(even).below_base, solved(told).below_base);
 }

@@ -26,7 +26,7 @@ Scene grooved_ground() {
   });
 }
 
-/// Twelve triangles and more of a box seen from inside: its triangles face inwards.
+/// A box seen from inside: its triangles face inwards. Each face is split into 12 × 12 squares.
 Scene box_from_inside() {
   Scene box;
   const int split = 12;

@@ -21,7 +21,8 @@ inline Measured measured(const Scene& scene, double radius_m, int threads = 0) {
   return {*surface, *curvature};
 }
 
-/// Root mean square and largest error of mean and principal curvatures over the points that `counts` selects.
+/// Errors over the points with a known truth: root mean square of mean and principal curvatures, largest of mean
+/// curvature and of direction.
 struct Errors {
   double mean_rms = 0, mean_worst = 0, principal_rms = 0, direction_worst_rad = 0;
   std::size_t points = 0, unknown = 0;

@@ -152,7 +152,7 @@ TEST(Ofl, PixelsAreRepeatedInTheOrderAskedFor) {
   EXPECT_EQ(names("[\"(2, 2)\", \"(1, 1)\"]"), (Names{"R (2, 2)", "R (1, 1)"}));
 }
 
-// As cameo/hydrabeam-300-rgbw: each head's mode tells the meaning of its next slot.
+// As cameo/hydrabeam-300-rgbw: each head's mode sets the meaning of its next slot.
 TEST(Ofl, APixelsSwitchingChannelsAreWhatTheyAreByDefaultToo) {
   const std::string more = R"("matrix": {"pixelCount": [2, 1, 1]}, "templateChannels": {
     "Mode $pixelKey": {"defaultValue": 20, "capabilities": [

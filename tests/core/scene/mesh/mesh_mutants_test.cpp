@@ -60,7 +60,7 @@ std::string mutant_of(std::string bytes, std::mt19937& random) {
   return bytes;
 }
 
-/// `read` tells whether it accepted the file. Returns the number accepted.
+/// `read` returns whether it accepted the file. Returns the number of accepted mutants.
 template <class Read>
 int feed(const std::vector<std::string>& seeds, const Read& read) {
   std::mt19937 random(20);

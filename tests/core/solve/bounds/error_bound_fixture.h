@@ -14,7 +14,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Lights with one or three emitters in rooms that share a little light, with all that can be wrong with them.
+/// Lights with one or three emitters, in rooms that share a little light, with every degenerate case.
 struct TinyLights {
   MatrixXd A;
   VectorXd goal, weight;
@@ -44,8 +44,8 @@ struct TinyLights {
       }
     if (seed % 6 == 2) A.col(static_cast<Index>(random.below(static_cast<std::size_t>(A.cols())))).setZero();
     if (seed % 6 == 3) A.col(0) = 2 * A.col(A.cols() - 1);
-    if (seed % 6 == 4) A.row(0).setZero();  // reached by nothing
-    if (seed % 6 == 5) {                    // units
+    if (seed % 6 == 4) A.row(0).setZero();  // no light reaches it
+    if (seed % 6 == 5) {                    // extreme units
       for (Index j = 0; j < A.cols(); ++j) A.col(j) *= std::pow(10, random.between(-12, 12));
       goal *= std::pow(10, random.between(-12, 12));
     }
@@ -53,7 +53,7 @@ struct TinyLights {
       VectorXd x = VectorXd::Zero(A.cols());
       x[0] = 1;
       x[A.cols() - 1] = 2;
-      goal = A * x;  // two lights are all that is needed
+      goal = A * x;  // two lights suffice
     }
     if (seed % 13 == 0) goal.setZero();
     if (seed % 4 == 1) {

@@ -49,7 +49,7 @@ TEST(ErrorBound, HoldsForAnyLevels) {
   }
 }
 
-// Of thousands of problems, with prices made up as well as sensible ones, and blocks from one to as many as rows.
+// Thousands of problems, with arbitrary and with sensible prices, and from one block to as many as rows.
 TEST(ErrorBoundsByCount, AreNeverAboveWhatAnyChoiceOfLightsReaches) {
   constexpr std::size_t kMax = 3;
   double bound_sum = 0, min_sum = 0;
@@ -83,7 +83,7 @@ TEST(ErrorBoundsByCount, AreNeverAboveWhatAnyChoiceOfLightsReaches) {
   EXPECT_GT(bound_sum, 0.8 * min_sum);
 }
 
-// In one block nothing is lost: branch and bound ends at the least error.
+// One block loses nothing: branch and bound ends at the least error.
 TEST(ErrorBoundsByCount, InOneBlockReachTheLeastError) {
   for (unsigned seed = 1; seed <= 400; ++seed) {
     const TinyLights tiny(seed);

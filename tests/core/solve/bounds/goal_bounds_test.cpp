@@ -12,7 +12,7 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-/// Weighted, with light that is there anyway, of one channel or three.
+/// Weighted goal with existing light, in one channel or three.
 LightingGoal drawn_goal(Random& random, Index points, Index channels) {
   LightingGoal goal;
   goal.lux.resize(points * channels);
@@ -44,7 +44,7 @@ TEST(GoalBounds, AreBelowTheBestOfAllPairsOfCandidatesInOneChannelAndInThree) {
     options.max_lights = 2;
     const std::vector<double> bounds = goal_error_bounds_by_count(hall.view(), goal, options);
     const double any = goal_error_bound(hall.view(), goal);
-    // Candidates' columns are float.
+    // Columns of candidates are float.
     EXPECT_LE(bounds[1], best_one * (1 + 1e-6));
     EXPECT_LE(bounds[2], best_two * (1 + 1e-6));
     EXPECT_LE(any, bounds[2] + 1e-6);

@@ -1,5 +1,5 @@
 #pragma once
-/// Random least-squares problems of every degenerate kind, and their optimality conditions in long double.
+/// Random least-squares problems of every degenerate kind, with their optimality conditions in long double.
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 namespace luxrig {
 
-/// Dense and sparse at once: the dense matrix holds what the sparse one says.
+/// Dense and sparse form of the same matrix.
 struct LeastSquaresCase {
   Eigen::MatrixXd A;
   Eigen::VectorXd goal, row_weight, upper;
@@ -27,8 +27,8 @@ struct LeastSquaresCase {
   }
 };
 
-/// Twelve kinds: plain, non-negative, sparse, with equal, zero or nearly equal columns, of low rank, in units from
-/// 1e-12 to 1e12, reached exactly, with upper bounds, with weights, and several of these together.
+/// Twelve kinds: plain; non-negative; sparse; equal, zero or nearly equal columns; low rank; units from 1e-12 to 1e12;
+/// exactly reachable goal; upper bounds; weights; several of these together.
 inline LeastSquaresCase least_squares_case(int seed, Eigen::Index max_rows, Eigen::Index max_columns) {
   using Eigen::Index;
   std::mt19937 random(static_cast<unsigned>(seed));
@@ -74,7 +74,7 @@ inline LeastSquaresCase least_squares_case(int seed, Eigen::Index max_rows, Eige
     c.row_weight.resize(m);
     for (double& v : c.row_weight) v = std::max(0.0, 3 * uniform(random));
   }
-  // As floats, since the sparse matrix has them; far below 1e-38 they would vanish.
+  // Rounded to float like the sparse matrix. Values far below 1e-38 become zero.
   c.A = c.A.cast<float>().cast<double>();
   if (kind == 8) {
     Eigen::VectorXd x(n);
@@ -93,8 +93,8 @@ inline LeastSquaresCase least_squares_case(int seed, Eigen::Index max_rows, Eige
   return c;
 }
 
-/// Worst violation of the optimality conditions, relative to the columns' norms times the goal's (and, for bounds, to
-/// what the goal's norm is in x); in long double from scratch. pull_j is subtracted from the gradient: what limits add.
+/// Worst violation of the optimality conditions, relative to the column's norm times the goal's; infinite outside the
+/// bounds. Computed from scratch in long double. pull_j, the effect of limits, is subtracted from the gradient.
 inline double kkt_violation(const LeastSquaresCase& c, const Eigen::VectorXd& x,
                             const Eigen::VectorXd& pull = Eigen::VectorXd()) {
   using Long = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;

@@ -19,7 +19,7 @@ using Eigen::VectorXd;
 
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
-/// Lux per level, goals and limits as solve_emittance() scales them, its tie term included.
+/// Lux per level, goals and limits, scaled as in solve_emittance() and with its tie term.
 LimitedLeastSquares scaled_lights(const MatrixXd& lux_per_level, const VectorXd& goal_lx, const VectorXd& max_lx,
                                   const VectorXd& max_level) {
   constexpr double kTieWeight = 1e-5;
@@ -51,7 +51,7 @@ LimitedLeastSquares scaled_lights(const MatrixXd& lux_per_level, const VectorXd&
 }
 
 /// Sparse for even seeds. Every third is degenerate: equal lights and points, points that no light reaches, limits of
-/// 0, lights that may not shine; every fourth has a limit at each goal.
+/// 0, lights with highest level 0. Every fourth has a limit at each goal.
 LimitedLeastSquares random_lights(int seed, Index lights, Index points) {
   std::mt19937 random(static_cast<unsigned>(seed));
   std::uniform_real_distribution<double> uniform;
@@ -77,11 +77,11 @@ LimitedLeastSquares random_lights(int seed, Index lights, Index points) {
   return scaled_lights(lux, goal_lx, max_lx, max_level);
 }
 
-/// How far from the optimum, with no multiplier taken from the solver: those that exist are found by least squares.
+/// Distance from the optimum without the solver's multipliers: they are found here by least squares.
 double distance_from_optimum(const LimitedLeastSquares& p, const VectorXd& z) {
   const VectorXd gradient = p.E.transpose() * (p.E * z - p.f), over = p.G * z - p.slack;
   double worst = over.size() > 0 ? std::max(0.0, over.maxCoeff()) : 0;
-  std::vector<VectorXd> pulls;  // of each constraint that holds something back
+  std::vector<VectorXd> pulls;  // one per active constraint
   for (Index j = 0; j < z.size(); ++j) {
     worst = std::max({worst, -z[j], z[j] - p.upper[j]});
     if (z[j] == 0) pulls.emplace_back(VectorXd::Unit(z.size(), j));
@@ -106,7 +106,7 @@ TEST(LimitedLeastSquares, ManyConstraintsAtATimeEndWhereOneAtATimeDoes) {
     ASSERT_TRUE(reference.converged) << seed;
     EXPECT_LT(distance_from_optimum(p, reference.z), 1e-9) << seed;
     const auto at = solve_by_multipliers(p, {});
-    if (!at) continue;  // not verified: the reference is what is returned then
+    if (!at) continue;  // not verified: the solver then uses the reference method
     ++taken;
     ASSERT_TRUE(at->converged) << seed;
     const double kkt = distance_from_optimum(p, at->z);
@@ -114,7 +114,7 @@ TEST(LimitedLeastSquares, ManyConstraintsAtATimeEndWhereOneAtATimeDoes) {
     const double difference = std::abs(error_of(p, at->z) - error_of(p, reference.z));
     EXPECT_LT(difference, 1e-10) << seed;
     const double tie = (at->z - reference.z).cwiseAbs().maxCoeff();
-    EXPECT_LT(tie, 1e-3) << seed;  // the tie term's own gradient is known to 1e-14 of 1e-10
+    EXPECT_LT(tie, 1e-3) << seed;  // the gradient is exact to 1e-14, the tie term is 1e-10
     worst = std::max(worst, difference);
     worst_kkt = std::max(worst_kkt, kkt);
     worst_tie = std::max(worst_tie, tie);
@@ -134,7 +134,7 @@ TEST(LimitedLeastSquares, TwoHundredLightsAndMoreReachTheReferenceAtThreeHundred
   }
 }
 
-/// A row of works, each lit by the lamps near it; a little of all lamps everywhere with reflections.
+/// A row of works, each lit by the lamps near it. With reflections, every lamp adds a little everywhere.
 LimitedLeastSquares lights_along_a_wall(Index lights, Index points, bool reflections, bool limits_everywhere) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> uniform;

@@ -12,7 +12,7 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-/// The chosen columns alone, through the other solver.
+/// Only the chosen columns, for the other solver.
 LeastSquaresCase chosen(const LeastSquaresCase& c, std::span<const Index> columns) {
   LeastSquaresCase part = c;
   part.A = c.A(Eigen::all, std::vector<Index>(columns.begin(), columns.end()));

@@ -14,8 +14,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Least error over all ways of putting each column at a bound or in between, where what is in between stays within its
-/// bounds; by QR.
+/// Least error over all choices of each column at a bound or free, where free columns stay within their bounds. By QR.
 double enumerated(const LeastSquaresCase& c) {
   const Index n = c.A.cols();
   const bool bounded = c.upper.size() > 0;
@@ -36,7 +35,7 @@ double enumerated(const LeastSquaresCase& c) {
     if (possible && static_cast<Index>(free.size()) <= c.A.rows()) {
       MatrixXd part = weight.asDiagonal() * c.A(Eigen::all, free);
       VectorXd norm(part.cols());
-      for (Index k = 0; k < part.cols(); ++k) {  // else the reference takes short columns for dependent ones
+      for (Index k = 0; k < part.cols(); ++k) {  // otherwise the reference takes short columns for dependent
         norm[k] = part.col(k).norm() > 0 ? part.col(k).norm() : 1;
         part.col(k) /= norm[k];
       }
@@ -80,7 +79,7 @@ TEST(NnlsProperties, FindsWhatEnumerationOfAllActiveSetsFinds) {
     const auto solution = solve_nnls(c.sparse());
     ASSERT_TRUE(solution.has_value());
     const double goal = weighted_goal(c), difference = solution->residual_norm - enumerated(c);
-    // Enumeration has rounding too: it may take nearly equal columns for dependent, and then finds more.
+    // Enumeration rounds too: it may take nearly equal columns for dependent and then finds a larger error.
     ASSERT_LE(difference, 1e-9 * goal) << seed;
     ASSERT_GE(difference, -1e-9 * goal - (seed % 12 == 5 || seed % 12 == 11 ? 1e-6 * goal : 0)) << seed;
     if (goal > 0) worst = std::max(worst, std::abs(difference) / goal);
@@ -88,7 +87,7 @@ TEST(NnlsProperties, FindsWhatEnumerationOfAllActiveSetsFinds) {
   std::printf("1800 problems: largest difference from enumeration %.2e of the goal\n", worst);
 }
 
-/// Accelerated projected gradient (Nesterov 1983; Beck & Teboulle 2009): shares nothing with an active set.
+/// Accelerated projected gradient (Nesterov 1983; Beck & Teboulle 2009): works without active sets.
 VectorXd projected_gradient(const MatrixXd& A, const VectorXd& b, int steps) {
   const double lipschitz = (A.transpose() * A).eval().cwiseAbs().rowwise().sum().maxCoeff();
   VectorXd x = VectorXd::Zero(A.cols()), y = x;
@@ -114,7 +113,7 @@ TEST(NnlsProperties, FindsWhatProjectedGradientsConvergeTo) {
   }
 }
 
-/// The way out that none of the problems above needs: it must be as good.
+/// The fallback, which none of the problems above needs, must be as good.
 TEST(NnlsProperties, OrthogonalFactorsFindTheSame) {
   double worst = 0;
   for (int seed = 0; seed < 1200; ++seed) {
@@ -150,7 +149,7 @@ TEST(NnlsProperties, GoesOnFromWhereItEnded) {
   ASSERT_TRUE(solver.has_value());
   const NnlsSolution first = solver->solve();
   EXPECT_EQ(solver->solve().iterations, 0);
-  // Another goal; one column forbidden and allowed again; a start of somebody else's.
+  // Another goal; one column forbidden and allowed again; a start from elsewhere.
   const VectorXd other = c.goal + 0.01 * c.goal.norm() * VectorXd::Ones(c.goal.size());
   solver->set_goal(other);
   const NnlsSolution warm = solver->solve();

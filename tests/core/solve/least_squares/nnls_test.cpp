@@ -21,7 +21,7 @@ struct Case {
 };
 
 /// A random problem of one of eight kinds: plain, non-negative, duplicate, zero or nearly equal columns, low rank,
-/// scales from 1e-12 to 1e12, a right-hand side that is reached exactly.
+/// scales from 1e-12 to 1e12, a right-hand side that can be reached exactly.
 Case random_case(int seed, Index max_columns) {
   std::mt19937 random(static_cast<unsigned>(seed));
   std::uniform_int_distribution<Index> rows(1, 30), columns(1, max_columns);
@@ -69,7 +69,7 @@ Case random_case(int seed, Index max_columns) {
   return c;
 }
 
-/// KKT as the header states it, worked out from scratch in long double.
+/// KKT as the header states it, computed from scratch in long double.
 double kkt_violation(const Case& c, const VectorXd& x) {
   using Long = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
   const Long A = c.A.cast<long double>();
@@ -94,7 +94,7 @@ double enumerated_residual_norm(const Case& c) {
     std::vector<Index> columns;
     for (Index j = 0; j < n; ++j)
       if (set >> j & 1u) columns.push_back(j);
-    // Columns to the same norm: otherwise the reference takes short ones for dependent.
+    // Columns scaled to the same norm, otherwise the reference takes short ones for dependent.
     const MatrixXd part = c.A(Eigen::all, columns).colwise().normalized();
     if (part.cols() > part.rows()) continue;
     const Eigen::ColPivHouseholderQR<MatrixXd> qr(part);
@@ -125,7 +125,7 @@ TEST(Nnls, FindsWhatEnumeratingAllActiveSetsFinds) {
   for (int seed = 0; seed < 400; ++seed) {
     const Case c = random_case(seed, 10);
     const NnlsResult result = solve_nnls(c.A, c.b);
-    // Enumeration also has rounding: nearly equal columns may make one of its sets a little negative.
+    // Enumeration rounds too: nearly equal columns may make one of its sets slightly negative.
     const double reference = enumerated_residual_norm(c);
     EXPECT_NEAR(result.residual_norm, reference, 1e-9 * c.b.norm()) << "seed " << seed;
   }

@@ -1,4 +1,4 @@
-// Lights that are on or off: against every setting of them, each solved by another method (limited_nnls.h).
+// Lights that are on or off, compared with every setting of them, each solved by another method (limited_nnls.h).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -20,7 +20,7 @@ using Eigen::VectorXd;
 constexpr double kBoundless = std::numeric_limits<double>::infinity();
 const double kNoGoal = std::numeric_limits<double>::quiet_NaN();
 
-/// Every third is degenerate: equal and dark lights, no room below a limit, no level to have.
+/// Every third is degenerate: equal and dark lights, no room below a limit, highest level 0.
 EmittanceProblem random_problem(unsigned seed, Index max_points, Index max_lights) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> uniform;
@@ -56,7 +56,7 @@ EmittanceProblem random_problem(unsigned seed, Index max_points, Index max_light
 
 double error_of(const EmittanceProblem& p, const VectorXd& level) { return std::sqrt(objective(p, level)); }
 
-/// What dims is solved beside this setting; +inf when the setting alone is above a limit.
+/// Solves the dimmable lights for this setting; +inf if the setting alone exceeds a limit.
 double min_error_with(const EmittanceProblem& p, const VectorXd& set) {
   std::vector<Index> dims, goals, limits;
   for (Index j = 0; j < set.size(); ++j)

@@ -25,7 +25,7 @@ TEST(ChooseLights, GivesACurveThatFallsAndLightsForEveryPointOfIt) {
     const PlacedLights& cut = curve.cuts[k];
     EXPECT_NEAR((cut.columns() * cut.levels() - goal.lux).norm() / goal.lux.norm(), cut.error(), 1e-12);
   }
-  // Two more would not have lowered the error by a tenth each.
+  // Two more lights would not have lowered the error by a tenth each.
   const std::size_t k = curve.chosen;
   ASSERT_LT(k, curve.cuts.size());
   if (k + 2 < curve.cuts.size()) {

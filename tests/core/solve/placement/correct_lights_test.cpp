@@ -11,8 +11,8 @@
 namespace luxrig {
 namespace {
 
-/// The better model: every light gives a tenth more than the quick one says, and some lux of its own besides that vary
-/// smoothly with its place.
+/// The better model: every light gives a tenth more lux than in the quick model, plus some lux that varies smoothly
+/// with its place.
 LuxOfLights better_lux(const LitHall& hall) {
   return [&hall](std::span<const LightPose> poses, const Eigen::VectorXd& levels) -> Result<Eigen::VectorXd> {
     Eigen::VectorXd all = Eigen::VectorXd::Zero(hall.light->points()), lux;
@@ -27,7 +27,7 @@ LuxOfLights better_lux(const LitHall& hall) {
 }
 
 TEST(CorrectLights, BringsAQuickModelToWhatABetterOneSays) {
-  LitRoom empty = make_box_room(3);  // no shadows, so that refining alone gets there
+  LitRoom empty = make_box_room(3);  // no shadows, so refining is enough
   empty.scene = {};
   const LitHall hall(empty, 10);
   const std::vector<LightPose> known = {{{0.9, 0.8, 2.1}}, {{3.1, 2.2, 1.9}}};

@@ -1,5 +1,4 @@
-/// What a goal may ask for beyond lux of one light: colours, light that is there anyway, a largest level; lights that
-/// are aimed.
+/// Options of a goal beyond the lux of one light: colours, existing light, a highest level; aimed lights.
 
 #include "core/solve/placement/lighting_goal.h"
 
@@ -43,7 +42,7 @@ TEST(LightPose, MovesAsItsStepSays) {
   }
 }
 
-// Central differences of the columns themselves.
+// Compared with central differences of the columns.
 TEST(SceneLight, SlopesOfAnAimedSpotAreThoseOfItsColumns) {
   const LitHall hall(empty_room(), 10);
   const SceneLight spot(*hall.transport, hall.room.receivers, {make_cosine_power(1, 6), {}}, {.aimed = true});
@@ -80,7 +79,7 @@ TEST(PlaceLights, FindsWhereSpotsHangAndWhatTheyLookAt) {
     ASSERT_TRUE(spot.column(pose, lux, nullptr));
     goal.lux += 500 * lux;
   }
-  // Candidates: each place with some aims.
+  // Candidates: each place with several aims.
   CandidateSet set{hall.set.positions_world_m, {}};
   std::vector<LightPose> poses;
   std::vector<Vec3> aims = {-Vec3::UnitZ()};
@@ -108,7 +107,7 @@ TEST(PlaceLights, FindsColouredLights) {
   const Eigen::Index points = hall.light->points();
   const std::vector<Vec3> places_m = {{0.9, 0.8, 2.1}, {3.1, 2.2, 1.9}};
   const Eigen::Vector3d colours[] = {{900, 300, 0}, {0, 200, 700}};
-  // Primaries that are those of the channels, and emitters that each give in two of them.
+  // Emitters equal to the primaries, and emitters that each feed two primaries.
   Eigen::Matrix3d mixed;
   mixed << 1, 0.2, 0, 0.3, 1, 0.1, 0, 0, 1;
   for (const Eigen::Matrix3d& emitters : {Eigen::Matrix3d(Eigen::Matrix3d::Identity()), mixed}) {
@@ -195,7 +194,7 @@ TEST(PlacedLights, KeepLimitsOfLuxAndPowerAndAreTheBestThatDo) {
     const Eigen::VectorXd lux = lights.columns() * lights.levels() + limited.fixed_lux;
     EXPECT_LE((lux - limited.max_lux).maxCoeff(), 0);
     EXPECT_LE(lights.watts(), limited.max_watts);
-    // No level can change by itself without breaking a limit or raising the error.
+    // No single level can change without breaking a limit or raising the error.
     for (Eigen::Index k = 0; k < lights.levels().size(); ++k)
       for (const double by : {-1e-3, 1e-3}) {
         Eigen::VectorXd other = lights.levels();
@@ -205,7 +204,7 @@ TEST(PlacedLights, KeepLimitsOfLuxAndPowerAndAreTheBestThatDo) {
         EXPECT_GE((lit - limited.lux).norm(), (lux - limited.lux).norm() * (1 - 1e-9));
       }
   }
-  // Light that is there anyway and breaks the limit alone: nothing is added.
+  // Existing light alone breaks the limit: nothing is added.
   LightingGoal broken;
   broken.lux = Eigen::VectorXd::Constant(hall.light->points(), 300);
   broken.fixed_lux = Eigen::VectorXd::Constant(hall.light->points(), 120);
@@ -236,7 +235,7 @@ TEST(EnergyFront, ErrorsRiseAsPowerFallsAndEveryLimitIsKept) {
   }
   EXPECT_LE(front[0].lights.error(), placed.lights.error() * (1 + 1e-9));
   EXPECT_EQ(front.back().lights.error(), 1);
-  // Moving the lights is worth something: only dimming those that were placed is worse.
+  // Moving the lights pays: only dimming the placed ones is worse.
   LightingGoal dimmed = goal;
   dimmed.max_watts = watts[2];
   PlacedLights still(*hall.light, dimmed);

@@ -1,5 +1,5 @@
 #pragma once
-/// A room to place lights in: candidates on a lattice, lux without reflection.
+/// A room to place lights in: candidates on a lattice, lux without reflections.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// A room of 4 × 3 × 2.5 m whose floor, ceiling and walls have names.
+/// A room of 4 × 3 × 2.5 m with named floor, ceiling and walls.
 
 #include <array>
 #include <utility>

@@ -104,7 +104,7 @@ TEST(Mounting, CandidatesFillTheAirEvenly) {
   const auto places_m = room.make()->candidates(2);
   ASSERT_TRUE(places_m);
   EXPECT_EQ(places_m->size(), 16u * 12 * 10);
-  room.spec.clearance_m = 0.25;  // the outermost stand 0.125 off the walls
+  room.spec.clearance_m = 0.25;  // drops the outermost, 0.125 m off the walls
   EXPECT_EQ(room.make()->candidates(2)->size(), 14u * 10 * 8);
   room.spec.spacing_m = std::nullopt;
   room.spec.clearance_m = 0;
@@ -119,7 +119,7 @@ TEST(Mounting, CandidatesOffASurfaceLieOnOneLatticeInLayers) {
   const Mounting mounting = *room.make();
   const auto places_m = mounting.candidates(1);
   ASSERT_TRUE(places_m);
-  // 0.3, 0.5 … 3.7 by 0.3 … 2.7, at 0.2 and 0.4 below the ceiling; above it the box has ended.
+  // 0.3, 0.5 … 3.7 by 0.3 … 2.7, at 0.2 and 0.4 below the ceiling. Above the ceiling is outside the box.
   EXPECT_EQ(places_m->size(), 18u * 13 * 2);
   for (const Vec3& place_m : *places_m) {
     EXPECT_TRUE(mounting.may_hang(place_m));

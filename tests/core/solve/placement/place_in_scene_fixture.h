@@ -6,7 +6,7 @@
 
 namespace luxrig::place_in_scene_fixture {
 
-/// Points on the floor of the mounted room, and lux that lights off its ceiling give them, from the inverse square.
+/// Points on the floor of the mounted room, and their lux from lights off its ceiling, by the inverse square law.
 struct LitFloor {
   Scene scene = mounted_room();
   RayScene rays{scene};
@@ -43,7 +43,7 @@ struct LitFloor {
 
 inline PlaceInSceneOptions direct_light() {
   PlaceInSceneOptions options;
-  options.max_level = 1e6;  // of one lumen each
+  options.max_level = 1e6;  // in lumens: the bulb has 1 lm
   options.indirect = false;
   return options;
 }

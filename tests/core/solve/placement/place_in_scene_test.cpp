@@ -51,7 +51,7 @@ TEST(PlaceInScene, HangsNoMoreThanIsWorthIt) {
   const LitFloor room;
   PlaceInSceneOptions options = direct_light();
   options.max_lights = 5;
-  options.improvement = 0.99;  // not even the second takes that much away
+  options.improvement = 0.99;  // not even the second light improves that much
   LightingGoal even = room.goal_of(kThree);
   even.lux.setConstant(100);
   const auto found = room.place(even, options);
@@ -68,7 +68,7 @@ TEST(PlaceInScene, HangsMoreWhereOneCannotGiveEnough) {
   const auto found = room.place(room.goal_of({{{2, 1.5, 2.3}, {}, 500}}), options);
   ASSERT_TRUE(found);
   ASSERT_GE(found->numbers.size(), 2u);
-  // Half of its light leaves half of the error in its place, and a little less nearer to the floor.
+  // Half of the light leaves half of the error at its place, slightly less nearer to the floor.
   EXPECT_LE(found->numbers[0].error, 0.5);
   EXPECT_GE(found->numbers[0].error, 0.4);
   EXPECT_GE(found->lights.size(), 2u);
@@ -76,7 +76,7 @@ TEST(PlaceInScene, HangsMoreWhereOneCannotGiveEnough) {
 }
 
 TEST(PlaceInScene, LightsThatLieOutsideAreSoughtAtTheEdge) {
-  // What these lights give cannot be had from under the ceiling: the best is at its far offset.
+  // These lights hang lower than allowed: the best place is at the far offset.
   const LitFloor room;
   PlaceInSceneOptions options = direct_light();
   options.lights = 1;
@@ -112,7 +112,7 @@ TEST(PlaceInScene, StoppedItGivesTheBestSoFar) {
   EXPECT_EQ(nothing.error().cause, Cause::cancelled);
 }
 
-/// Two lamps with red, green, blue and white in them, by the inverse square; sums by primary, one behind the other.
+/// Two lamps with red, green, blue and white emitters, by the inverse square law. Goals are stacked by primary.
 TEST(PlaceInScene, FindsLampsWithSeveralEmittersFromGoalsOfAColour) {
   const LitFloor room;
   const auto points = static_cast<Eigen::Index>(room.receivers.size());
@@ -142,7 +142,7 @@ TEST(PlaceInScene, FindsLampsWithSeveralEmittersFromGoalsOfAColour) {
     const LightInScene& light = found->lights[first ? 0 : 1];
     ASSERT_EQ(light.levels.size(), 4u);
     EXPECT_EQ(light.level, *std::max_element(light.levels.begin(), light.levels.end()));
-    // Three channels cannot tell four emitters apart: what they give together is what was asked for.
+    // Three channels cannot separate four emitters: only their sum must match.
     const Eigen::Map<const Eigen::Vector4d> levels(light.levels.data());
     EXPECT_NEAR((goal.emitters * (levels - lumens[k])).norm(), 0, 0.01 * (goal.emitters * lumens[k]).norm());
   }
@@ -161,7 +161,7 @@ TEST(PlaceInScene, FindsLampsWithSeveralEmittersFromGoalsOfAColour) {
 TEST(PlaceInScene, KeepsALimitOfPower) {
   const LitFloor room;
   LightingGoal goal = room.goal_of(kThree);
-  goal.watts = Eigen::VectorXd::Constant(1, 0.01);  // 18 W would do
+  goal.watts = Eigen::VectorXd::Constant(1, 0.01);  // 18 W would be enough
   goal.max_watts = 9;
   PlaceInSceneOptions options = direct_light();
   options.lights = 3;

@@ -10,7 +10,7 @@
 namespace luxrig {
 namespace {
 
-/// From each of these places to the nearest light.
+/// Largest distance from one of these places to its nearest light.
 double farthest_off_m(const std::vector<Vec3>& places_m, const PlacedLights& lights) {
   double farthest_m = 0;
   for (const Vec3& place_m : places_m) {
@@ -70,7 +70,7 @@ TEST(PlaceLights, BeginsAHardGoalInAnotherWayTooAndKeepsTheBetter) {
     ++asked;
     return many;
   };
-  // Of no use: none; one that is there twice, and one where no light may hang.
+  // Useless proposals: none; a duplicate together with a place where no light may hang.
   const LightPose nowhere{{1e4, 0, 0}};
   for (const std::vector<LightPose>& useless :
        {std::vector<LightPose>{}, {hall.poses.front(), hall.poses.front(), nowhere}}) {
@@ -80,7 +80,7 @@ TEST(PlaceLights, BeginsAHardGoalInAnotherWayTooAndKeepsTheBetter) {
     EXPECT_LE(got.lights.error(), 1.1 * alone.lights.error());
   }
   EXPECT_GE(asked, 2);
-  // Of great use: better lights than the first start ends with, and two that are not needed.
+  // A useful proposal: better lights than the first start ends with, plus two that are not needed.
   PlaceOptions patient = options;
   patient.other = {};
   patient.max_columns = 3000;

@@ -45,7 +45,7 @@ TEST(PlaceLights, TellsOfBetterOnesAsItGoesAndReturnsTheBestWhenStopped) {
 TEST(PlaceLights, TakesGoalsOfZeroPointsOutOfReachAndEqualCandidates) {
   LitHall hall(make_box_room(1), 0.5);
   const Eigen::Index points = hall.light->points();
-  // Twice each candidate.
+  // Each candidate twice.
   CandidateColumns twice;
   std::vector<LightPose> poses;
   for (std::size_t c = 0; c < hall.columns.columns(); ++c)
@@ -72,7 +72,7 @@ TEST(PlaceLights, TakesGoalsOfZeroPointsOutOfReachAndEqualCandidates) {
     EXPECT_TRUE(got.lights.levels().allFinite());
     EXPECT_TRUE((got.lights.levels().array() >= 0).all());
   }
-  // Candidates of which none lights anything.
+  // A candidate that lights nothing.
   const std::vector<std::uint64_t> begin = {0, 0};
   const std::vector<LightPose> outside = {{{100, 100, 100}}};
   const ColumnsView dark(points, begin, std::span<const std::uint32_t>(), std::span<const float>());

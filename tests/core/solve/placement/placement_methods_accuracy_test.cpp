@@ -12,7 +12,7 @@ namespace {
 
 using namespace placement_methods_fixture;
 
-/// ‖A x + f − b‖ / ‖b‖ from the poses alone.
+/// ‖A x + f − b‖ / ‖b‖, computed only from the poses and levels.
 double error_from_scratch(const LitHall& hall, const LightingGoal& goal, const PlacedLights& lights) {
   Eigen::VectorXd rest = goal.lux, lux;
   if (goal.fixed_lux.size() > 0) rest -= goal.fixed_lux;
@@ -30,8 +30,8 @@ double error_from_scratch(const LitHall& hall, const LightingGoal& goal, const P
 TEST(PlacementMethods, FindKnownLightsAsWellAsTheyShould) {
   const LitHall hall(make_box_room(3), kHallLattice_m);
   const LightingGoal goal = hall.goal_of({{0.9, 0.8, 2.1}, {3.1, 2.2, 1.9}, {2.2, 1.4, 2.3}}, {800, 500, 300});
-  // Annealing from one start: compilers draw in different orders, and some draws end higher than others.
-  // None of the lights is at a candidate. What moves lights gets near, what does not stays with the lattice.
+  // Annealing runs from one start: draws differ between compilers, and some end higher. No light is at a candidate:
+  // methods that move lights come near, the others stay on the lattice.
   const std::vector<std::pair<std::string, double>> reached = {
       {"luxrig", 1e-4},       {"gpk15", 0.06},   {"gp16", 0.06},      {"gpk15-subplex", 0.06},
       {"gp16-subplex", 0.06}, {"lin2013", 0.15}, {"annealing", 0.06}, {"pursuit", 0.2}};
@@ -47,7 +47,7 @@ TEST(PlacementMethods, FindKnownLightsAsWellAsTheyShould) {
 }
 
 TEST(PlacementMethods, KeepToColours) {
-  // Red, green and blue emitters of each light, one point weighted out, some light there already.
+  // Red, green and blue emitters in each light, some existing light.
   const LitHall hall(make_box_room(3), kHallLattice_m);
   const Eigen::Index points = hall.light->points();
   LightingGoal goal;

@@ -182,7 +182,7 @@ TEST(AnnealCandidates, NeverEndsWorseThanItBegan) {
       AnnealOptions options;
       options.iterations = 60;
       options.nearest = nearest;
-      options.hottest = 10;  // takes nearly everything
+      options.hottest = 10;  // accepts nearly every move
       const ChosenCandidates end = anneal(start, options, random);
       EXPECT_LE(end.error(), start.error());
       EXPECT_EQ(end.size(), 3u);
@@ -203,7 +203,7 @@ TEST(CandidateLights, NearestIsWhatComparingAllGives) {
   chosen.choose(drawn_candidates(*candidates, 3, random));
   const Eigen::VectorXd residual = chosen.residual();
   const Eigen::VectorXd unit = goal.weighted(residual).normalized();
-  std::vector<std::pair<double, std::size_t>> all;  // by distance of unit vectors
+  std::vector<std::pair<double, std::size_t>> all;  // by distance between unit vectors
   for (std::size_t c = 0; c < hall.poses.size(); ++c) {
     Eigen::VectorXd lux = Eigen::VectorXd::Zero(residual.size());
     hall.view().add(static_cast<Eigen::Index>(c), 1, lux.data());
@@ -253,7 +253,7 @@ TEST(SimplexRefine, StaysWithinACellAndLowersTheError) {
     EXPECT_LE(lights.error(), 0.01);
     EXPECT_LE((lights.poses()[0].position_world_m - place_m).norm(), 0.01);
   }
-  options.cell_m = 0.02;  // too little room to get there
+  options.cell_m = 0.02;  // too small to reach it
   PlacedLights held = start;
   refine_by_simplex(held, options);
   EXPECT_LT(held.error(), start.error());

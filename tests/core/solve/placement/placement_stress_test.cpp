@@ -1,5 +1,5 @@
-/// Placement in rooms of a millimetre and of kilometres, far from the origin, with lights that touch surfaces, and with
-/// goals that nothing can meet.
+/// Placement in rooms from a millimetre to kilometres, far from the origin, with lights that touch surfaces, and with
+/// goals that cannot be met.
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 namespace luxrig {
 namespace {
 
-/// The room scaled about the origin, then put elsewhere.
+/// The room scaled about the origin, then moved.
 LitRoom rescaled(LitRoom room, double scale, const Vec3& to_m) {
   for (auto& vertex : room.scene.vertices_m) vertex *= static_cast<float>(scale);
   room.scene.origin_world_m = scale * room.scene.origin_world_m + to_m;
@@ -36,7 +36,7 @@ TEST_P(PlacementStress, FindsTheSameLightsAtAnyScaleAndPlace) {
   options.max_columns = 20'000;
   options.exchange = ExchangeOptions::for_spacing(0.25 * scale);
   const Placement got = place_lights(*hall.light, goal, candidates, options);
-  // A millimetre at 10⁶ m is what doubles and float rays leave of a room there.
+  // At 10⁶ m from the origin, doubles and float rays are exact to a millimetre.
   const double exact = std::max(1e-4, 1e-9 * far_m / scale);
   EXPECT_LE(got.lights.error(), exact);
   for (const Vec3& place_m : places_m) {

@@ -8,7 +8,7 @@
 namespace luxrig {
 namespace {
 
-// Central differences of the columns themselves, where nothing is in between.
+// Compared with central differences of the columns, without obstacles.
 TEST(SceneLight, DerivativesAreThoseOfItsColumns) {
   LitRoom empty = make_box_room(1);
   empty.scene = {};
@@ -69,7 +69,7 @@ TEST(RefineLights, NeverMakesTheErrorLargerAmongShadows) {
   }
 }
 
-// Against levels solved afresh with each candidate added.
+// Compared with levels solved again with each candidate added.
 TEST(ComplementSearch, GivesTheFallOfTheErrorOfEveryCandidateAndTheBestFirst) {
   const LitHall hall(make_box_room(1), 0.5);
   Random random(11);
@@ -91,7 +91,7 @@ TEST(ComplementSearch, GivesTheFallOfTheErrorOfEveryCandidateAndTheBestFirst) {
       PlacedLights with = lights;
       ASSERT_TRUE(with.add(search.pose(all[i].candidate)));
       if ((with.levels().array() <= 0).any()) continue;  // a level met its bound: the formula does not hold
-      // Candidates are kept in float.
+      // Candidates are stored as float.
       EXPECT_NEAR(squared - with.residual().squaredNorm(), all[i].gain, 1e-5 * squared) << chosen << " " << i;
     }
     const auto apart = search.best(lights, 4, 1.0);
@@ -106,7 +106,7 @@ TEST(ComplementSearch, GivesTheFallOfTheErrorOfEveryCandidateAndTheBestFirst) {
   }
 }
 
-// One pass about all lights answers for those that are left when some are taken out, as a pass about these does.
+// One pass over all lights also serves those left after some are removed: same result as a pass over these.
 TEST(ComplementSearch, AboutAllLightsKnowsTheBestForThoseThatAreLeft) {
   const LitHall hall(make_box_room(1), 0.5);
   Random random(12);
@@ -114,7 +114,7 @@ TEST(ComplementSearch, AboutAllLightsKnowsTheBestForThoseThatAreLeft) {
   for (Eigen::Index i = 0; i < goal.lux.size(); ++i) goal.lux[i] = random.between(100, 500);
   const ComplementSearch search(hall.view(), hall.poses, goal);
   PlacedLights lights(*hall.light, goal);
-  // The second hangs where the first does.
+  // The second hangs at the place of the first.
   for (const Vec3& place : {Vec3(1, 1, 2), Vec3(1, 1, 2), Vec3(3, 1, 2), Vec3(2, 2, 1)})
     ASSERT_TRUE(lights.add({place}));
   const auto about = search.about(lights);

@@ -78,7 +78,7 @@ TEST(AirRegions, DoNotJudgeByOpenSurfaces) {
 }
 
 TEST(AirRegions, HoldOnLatticesThatRunAlongFacesEdgesAndCorners) {
-  // Every vertical line through a lattice point of halves meets edges or corners of these boxes.
+  // Every vertical line through a point of the 0.5 m lattice meets edges or corners of these boxes.
   Scene scene = empty_scene();
   for (int x = 0; x < 3; ++x)
     for (int y = 0; y < 3; ++y) add_box(scene, {1.0 * x, 1.0 * y, 0.25}, {x + 1.0, y + 1.0, 0.75});
@@ -95,7 +95,7 @@ TEST(ReceiversAir, LeavesOutSolidsAndSealedRoomsButNotWhatADoorJoins) {
     const Scene scene = two_rooms(0.7, door);
     const RayScene rays(scene);
     auto receivers = receivers_in_two_rooms(6);
-    receivers.resize(6);  // of the first room
+    receivers.resize(6);  // the first room
     const ReceiversAir air(scene, rays, receivers);
     EXPECT_TRUE(air.reaches({2, 2.5, 2}));
     EXPECT_FALSE(air.reaches({1.5, 1.5, 0.72})) << "in the table";
@@ -104,7 +104,7 @@ TEST(ReceiversAir, LeavesOutSolidsAndSealedRoomsButNotWhatADoorJoins) {
     EXPECT_TRUE(air.reaches({3, 1, 2.5})) << "flush with the ceiling";
     EXPECT_TRUE(air.reaches({1.5, 1.5, 0.75})) << "lying on the table";
   }
-  // A room as one closed surface: outdoors gets nothing of what is inside.
+  // A room as one closed surface: no light from inside gets outdoors.
   Scene shell = empty_scene();
   add_box(shell, {0, 0, 0}, {4, 3, 2.5});
   const RayScene rays(shell);

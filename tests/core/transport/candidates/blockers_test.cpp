@@ -29,7 +29,7 @@ TEST(Blockers, WhatTheyHideIsOccludedAtEveryScaleAndPlace) {
       Scene scene;
       scene.materials = {{"any", Vec3::Constant(0.5)}};
       scene.object_names = {"scene"};
-      // A parallelogram, now and then a sliver or a point.
+      // A parallelogram, sometimes degenerate: a sliver or a point.
       const Vec3 corner = vector(scale_m), u = vector(scale_m),
                  v = trial % 10 == 0 ? Vec3(1e-7 * u + vector(1e-6 * scale_m)) : vector(scale_m);
       for (const Vec3& p : {corner, Vec3(corner + u), Vec3(corner + u + v), Vec3(corner + v)})
@@ -62,7 +62,7 @@ TEST(PointTree, HoldsEachPointOnceInsideItsBoxes) {
   std::mt19937 random(1);
   std::uniform_int_distribution<int> coarse(0, 9);
   for (const std::size_t count : {0u, 1u, 8u, 9u, 1000u}) {
-    std::vector<Vec3> points_m;  // many in the same place
+    std::vector<Vec3> points_m;  // many coincide
     for (std::size_t i = 0; i < count; ++i) points_m.emplace_back(coarse(random), coarse(random), 0);
     const PointTree tree(points_m);
     std::vector<int> seen(count, 0);

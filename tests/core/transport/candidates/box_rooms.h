@@ -1,5 +1,5 @@
 #pragma once
-/// Rooms of boxes, for tests: walls with thickness, a doorway, a table.
+/// Rooms built of boxes for tests: thick walls, a doorway, a table.
 
 #include <array>
 #include <cmath>
@@ -10,8 +10,8 @@
 
 namespace luxrig {
 
-/// Two rooms of 4 × 3 × 2.5 m side by side along x, from (0, 0, 0), with a wall of 15 cm at x = 4; a table in the
-/// first. door: a gap of 0.9 × 2 m in that wall.
+/// Two rooms of 4 × 3 × 2.5 m side by side along x, from (0, 0, 0). Between them stands a wall of 15 cm at x = 4. The
+/// first room has a table. door: a gap of 0.9 × 2 m in that wall.
 inline Scene two_rooms(double reflectance, bool door) {
   Scene scene;
   scene.materials = {{"wall", Vec3::Constant(reflectance)}, {"table", Vec3::Constant(0.3 * reflectance)}};
@@ -34,7 +34,7 @@ inline Scene two_rooms(double reflectance, bool door) {
   return scene;
 }
 
-/// Points on a plane that looks up, on the table, on the floor and on walls of both rooms.
+/// Points in both rooms: facing up at 0.9 m, on the floor, and on a wall.
 inline std::vector<Receiver> receivers_in_two_rooms(int per_room) {
   std::vector<Receiver> receivers;
   for (const double from_x : {0.0, 4.15})
@@ -54,7 +54,7 @@ inline std::vector<Receiver> receivers_in_two_rooms(int per_room) {
   return receivers;
 }
 
-/// Lattice over both rooms, walls and the table included, and a little beyond.
+/// Lattice over both rooms and a little beyond, including the insides of walls and table.
 inline std::vector<Vec3> lattice_m(double step_m) {
   std::vector<Vec3> positions_m;
   for (double z = -0.3 + 0.6 * step_m; z < 2.8; z += step_m)
@@ -70,7 +70,7 @@ inline Emitter spot_luminaire(const Vec3& aim, const Vec3& offset_m = Vec3::Zero
   return {make_spot(800, rad_from_deg(20), rad_from_deg(40)), {turned, offset_m}};
 }
 
-/// Column c of a matrix, dense.
+/// Column c of a matrix as a dense vector.
 inline std::vector<float> dense_column(const CandidateColumns& matrix, std::size_t c, const std::vector<float>& part,
                                        std::size_t receivers) {
   std::vector<float> column(receivers, 0.0f);

@@ -12,8 +12,8 @@ namespace {
 
 using namespace candidate_skips_fixture;
 
-// Without a skip other rays are cast, so that reflected light is estimated anew: of two estimates, 95 % should be
-// within twice the errors of both.
+// Without a skip, different rays are cast, so reflected light is a new estimate. For two estimates, 95 % of differences
+// should be within twice their combined error.
 TEST(CandidateSkips, InAFurnishedRoomReflectedLightStaysWithinItsErrorWithoutAnyOfThem) {
   const LitRoom room = make_box_room();
   const RayScene rays(room.scene);
@@ -29,7 +29,7 @@ TEST(CandidateSkips, InAFurnishedRoomReflectedLightStaysWithinItsErrorWithoutAny
     options.skips.*skip = false;
     const auto got = candidate_transport(room.scene, rays, room.receivers, set, options);
     ASSERT_TRUE(got);
-    // The plan of how many rays each needs may differ a little.
+    // The planned number of rays may differ a little.
     EXPECT_GE(got->statistics.rays, all->statistics.rays * 9 / 10);
     std::size_t entries = 0, moved = 0;
     double sum = 0, other_sum = 0;

@@ -8,7 +8,7 @@
 
 namespace luxrig::candidate_skips_fixture {
 
-/// Anywhere in the box around the scene, solids included: a lamp to all sides and a spot.
+/// Random places in the box around the scene, inside solids too: an isotropic lamp and a spot.
 inline CandidateSet places_in(const RayScene& rays, std::size_t count) {
   std::mt19937_64 random(11);
   const Eigen::AlignedBox3d box = rays.bounds_world_m();

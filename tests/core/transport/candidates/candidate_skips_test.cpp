@@ -1,4 +1,4 @@
-/// In furnished rooms no skip of the candidate matrix moves an answer by more than its stated error: exact ones by
+/// In furnished rooms no skip of the candidate matrix moves a result by more than its stated error. Exact skips move
 /// nothing.
 
 #include <gtest/gtest.h>

@@ -13,7 +13,7 @@ namespace {
 
 using namespace candidate_transport_fixture;
 
-/// What the direct evaluator says of every candidate, in float.
+/// Results of the direct evaluator for every candidate, as float.
 std::vector<float> evaluated(const RayScene& rays, std::span<const Receiver> receivers, const CandidateSet& set) {
   std::vector<Emitter> emitters;
   for (const Vec3& at : set.positions_world_m)
@@ -70,7 +70,7 @@ TEST(CandidateTransport, ExactSkipsSaveRaysAndChangeNoByte) {
     EXPECT_LT(static_cast<double>(got.statistics.rays), share * static_cast<double>(all.statistics.rays));
   };
   fewer_rays_with(&CandidateSkips::other_air, 0.9);
-  fewer_rays_with(&CandidateSkips::behind, 1.0001);  // saves visits, not rays
+  fewer_rays_with(&CandidateSkips::behind, 1.0001);  // saves visits, but not rays
   fewer_rays_with(&CandidateSkips::blockers, 0.9);
   options.skips = {};
   const auto skipped = computed(scene, rays, receivers, set, options);
@@ -212,7 +212,7 @@ TEST(CandidateTransport, CandidatesInReceiversAndOnSurfacesGiveFiniteNumbers) {
   for (const bool indirect : {false, true}) {
     CandidateOptions options;
     options.indirect = indirect;
-    options.surface_cells = 500;  // nothing here asks for accuracy
+    options.surface_cells = 500;  // this test needs no accuracy
     options.max_rays_per_candidate = 256;
     const auto got = computed(scene, rays, receivers, set, options);
     EXPECT_GT(got.matrix.entries(), 0u);

@@ -1,5 +1,5 @@
 #pragma once
-/// The transport of candidates, or a failed test.
+/// Computes the transport of candidates; fails the test on error.
 
 #include <gtest/gtest.h>
 

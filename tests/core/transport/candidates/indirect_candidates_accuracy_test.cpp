@@ -118,7 +118,7 @@ TEST(IndirectCandidates, CostGrowsLinearlyInCandidates) {
   const auto receivers = receivers_in_two_rooms(6);
   CandidateOptions options = coarse();
   options.surface_cells = 300;
-  options.wanted_relative_error = 1;  // so that all cast the same number of rays
+  options.wanted_relative_error = 1;  // every position casts the same number of rays
   std::vector<double> cost;
   for (const double step_m : {0.5, 0.25}) {
     CandidateSet set{lattice_m(step_m), {isotropic_luminaire()}};
@@ -139,7 +139,7 @@ TEST(IndirectCandidates, InterpolatedColumnsAreWhatLookingGives) {
   const auto got = computed(scene, rays, receivers, all, options);
   EXPECT_GT(got.statistics.nodes, 150u);
   EXPECT_LT(got.statistics.columns_looked_at * 2, all.columns()) << "most are interpolated";
-  options.skips.foretold = false;  // the same surfaces, each position with rays of its own
+  options.skips.foretold = false;  // same surfaces, but every position casts its own rays
   const auto looked = computed(scene, rays, receivers, all, options);
   EXPECT_EQ(looked.statistics.nodes, 0u);
   EXPECT_EQ(looked.statistics.columns_looked_at, all.columns() - looked.statistics.columns_other_air);

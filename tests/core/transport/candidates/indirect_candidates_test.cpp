@@ -1,5 +1,4 @@
-/// Reflected light of candidates, held against radiosity, against path tracing, and against itself with nothing
-/// skipped.
+/// Reflected light of candidates, compared with radiosity, with path tracing, and with itself without skips.
 
 #include <gtest/gtest.h>
 
@@ -22,7 +21,7 @@ TEST(IndirectCandidates, SendNothingThroughAClosedWall) {
   const auto receivers = receivers_in_two_rooms(10);
   const CandidateSet set{lattice_m(0.6), {isotropic_luminaire()}};
   CandidateOptions options = coarse();
-  options.surface_cells = 500;  // cells of half a metre, the wall of 15 cm
+  options.surface_cells = 500;  // cells of half a metre against a wall of 15 cm
   const auto got = computed(scene, rays, receivers, set, options);
   int inside_rooms = 0;
   for (std::size_t c = 0; c < set.columns(); ++c)
@@ -109,7 +108,7 @@ TEST(IncrementalTransport, RefusesAndStops) {
   bad = isotropic_luminaire();
   bad.shape.kind = LuminousShape::Kind::sphere;
   EXPECT_FALSE((*made)->column(bad));
-  // A moved object, with luminaires that are refused, a matrix that does not fit, a box without a place, no box.
+  // A moved object: with refused luminaires, an infinite box, a matrix of the wrong size, and an empty box.
   Eigen::MatrixXd lux = Eigen::MatrixXd::Constant(6, 1, 7);
   const Eigen::MatrixXd before = lux;
   const Eigen::AlignedBox3d box(Vec3(0, 0, 0), Vec3(8, 3, 2.5));

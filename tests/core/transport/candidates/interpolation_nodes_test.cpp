@@ -39,10 +39,10 @@ TEST(InterpolationNodes, GiveBackWhatIsLinearInThePlace) {
       sum += static_cast<double>(share.weight);
     }
     EXPECT_NEAR(sum, 1, 1e-5);
-    // The ridge pulls slopes towards none by about a hundredth of what they make out over the nodes' spread.
+    // The ridge flattens slopes: it costs about a hundredth of the change over the spread of the nodes.
     EXPECT_NEAR(value, linear(places_m[p]), 0.03);
   }
-  EXPECT_GT(interpolated, places_m.size() / 7 * 8 / 10);  // not in corners
+  EXPECT_GT(interpolated, places_m.size() / 7 * 8 / 10);  // all but the corners
 }
 
 TEST(InterpolationNodes, GiveTheSlopeOfWhatIsLinearInThePlace) {
@@ -64,7 +64,7 @@ TEST(InterpolationNodes, GiveTheSlopeOfWhatIsLinearInThePlace) {
     for (std::size_t i = 0; i < shares.size(); ++i)
       found += slopes_per_m[i] * places_m[nodes.position(shares[i].row)].dot(slope);
     ++all;
-    if ((found - slope).norm() < 0.1 * slope.norm()) ++near;  // the ridge takes some per cent
+    if ((found - slope).norm() < 0.1 * slope.norm()) ++near;  // the ridge takes a few per cent
   }
   EXPECT_GE(near, all * 9 / 10);
 }
@@ -115,7 +115,7 @@ TEST(InterpolationNodes, AreAsFineAsAllowedAndBearOddInput) {
   }
 }
 
-// A grid as fine as asked for left every place alone in the dark: no node had a neighbour within reach.
+// Regression: at the full requested density no node had a neighbour within reach, so every place stayed dark.
 TEST(InterpolationNodes, AreNoFinerThanLetsEveryPlaceBeOne) {
   std::vector<Vec3> places_m;
   for (int x = 0; x < 12; ++x)

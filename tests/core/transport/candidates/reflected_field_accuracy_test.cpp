@@ -12,7 +12,7 @@ namespace {
 
 using namespace reflected_field_fixture;
 
-// Against light worked out for that place by itself.
+// Compared with light computed at that place alone.
 TEST(ReflectedField, AgreesWithRaysFromThePlaceItself) {
   const FieldOfTwoRooms two;
   const ReflectedField field = two.field(400);
@@ -27,7 +27,7 @@ TEST(ReflectedField, AgreesWithRaysFromThePlaceItself) {
   for (int trial = 0; trial < 25; ++trial) {
     const Vec3 at_m(random.between(0.5, 3.5), random.between(0.5, 2.5), random.between(1.2, 2.2));
     Eigen::VectorXd lux = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(two.receivers.size()));
-    if (!field.add(at_m, lux, nullptr)) continue;  // under the table, say
+    if (!field.add(at_m, lux, nullptr)) continue;  // e.g. under the table
     ++told;
     const auto column = (*exact)->column({two.lumen.intensity, {Mat3::Identity(), at_m}});
     const Eigen::VectorXd reflected = column->total_lux - column->direct_lux;

@@ -10,7 +10,7 @@ namespace {
 
 using namespace reflected_field_fixture;
 
-// Nodes as fine as the places leave many of them without enough neighbours for a plane, in a narrow room most of all.
+// If nodes are as dense as the places, many have too few neighbours to fit a plane, most of all in a narrow room.
 TEST(ReflectedField, LeavesNoPlaceWithoutReflectedLight) {
   FieldOfTwoRooms two;
   two.options.wanted_relative_error = 0.2;

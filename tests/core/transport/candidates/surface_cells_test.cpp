@@ -15,7 +15,7 @@ TEST(SurfaceCells, AWallPartsTheFloorUnderIt) {
   const RayScene rays(scene);
   std::mt19937 random(2);
   std::uniform_real_distribution<double> unit(0, 1);
-  // Cells far larger than the wall is thick.
+  // Cells far larger than the thickness of the wall.
   for (int trial = 0; trial < 20; ++trial) {
     SurfaceCells cells(scene, rays, 0.6, {unit(random), unit(random), unit(random)});
     std::set<std::uint32_t> left, right;
@@ -29,7 +29,7 @@ TEST(SurfaceCells, AWallPartsTheFloorUnderIt) {
     }
     for (const std::uint32_t cell : left) EXPECT_FALSE(right.contains(cell));
     EXPECT_LT(left.size(), 30u);
-    // Found again; and never across the wall.
+    // Every place is found again, never across the wall.
     std::uint64_t cast = 0;
     for (const auto& [at, cell] : places) {
       const auto found = cells.find(at, Vec3::UnitZ(), cast);

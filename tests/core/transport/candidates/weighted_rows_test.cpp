@@ -46,7 +46,7 @@ TEST(DirectionGuide, DrawsWithTheDensityThatItStates) {
     EXPECT_EQ(guide.empty(), !filled);
     guide.finish();
     const SobolSequence samples(3);
-    // Integrals over the sphere of 1, z² and of a cap, by drawn directions.
+    // Integrals of 1, of z² and of a cap over the sphere, from drawn directions.
     double one = 0, square = 0, cap = 0;
     const std::uint32_t count = 1 << 16;
     for (std::uint32_t i = 0; i < count; ++i) {

@@ -30,7 +30,7 @@ TransportMatrix direct_matrix(const Scene& scene, const std::vector<Receiver>& r
   return result ? *result : TransportMatrix{};
 }
 
-/// I(γ) = I0 cos γ about -Z, written here so that expectations do not lean on our photometry.
+/// I(γ) = I0 cos γ about -Z, written here so that the expected values do not depend on our photometry.
 class CosineLamp final : public IntensityDistribution {
  public:
   double intensity_cd(const Vec3& direction_lamp) const override { return std::max(0.0, -123.0 * direction_lamp.z()); }
@@ -54,7 +54,7 @@ TEST(DirectEvaluator, MatchesTheDistanceLawAtAThousandRandomConfigurations) {
     const auto matrix =
         evaluator->evaluate(std::vector<Receiver>{{p, n}}, std::vector<Emitter>{lambertian, isotropic}, {});
     ASSERT_TRUE(matrix.has_value()) << matrix.error().detail;
-    // In long double, from coordinates alone.
+    // In long double, from the coordinates alone.
     long double d2 = 0, nd = 0, ad = 0;
     for (int k = 0; k < 3; ++k) {
       const long double d = static_cast<long double>(q[k]) - p[k];
@@ -75,7 +75,7 @@ TEST(DirectEvaluator, MatchesTheDistanceLawAtAThousandRandomConfigurations) {
 TEST(DirectEvaluator, AWallBetweenCastsItsShadowAndOneBesideDoesNot) {
   const std::vector<Emitter> lamp = {{make_isotropic(4 * kPi), {Mat3::Identity(), {2, 0, 0}}}};
   const std::vector<Receiver> receivers = {{{0, 0, 0}, Vec3::UnitX()},    // behind the wall
-                                           {{0, 5, 0}, Vec3::UnitX()},    // the line to the lamp passes the wall's edge
+                                           {{0, 5, 0}, Vec3::UnitX()},    // the line to the lamp passes beside the wall
                                            {{1.5, 0, 0}, Vec3::UnitX()},  // between wall and lamp
                                            {{1, 0, 0.25}, Vec3::UnitX()}};  // on the wall, lit side
   const auto matrix = direct_matrix(wall_at_x(1, 0.5), receivers, lamp);

@@ -11,7 +11,7 @@
 
 namespace luxrig::direct_shape_fixture {
 
-/// The same luminance everywhere above the horizon.
+/// Constant luminance above the horizon.
 class UniformSky final : public SkyLuminance {
  public:
   explicit UniformSky(double cd_m2) : cd_m2_(cd_m2) {}
@@ -67,7 +67,7 @@ inline DirectLight direct(const Scene& scene, const std::vector<Receiver>& recei
   return result ? *result : DirectLight{};
 }
 
-/// A luminous rectangle 2 m above the receiver, and half-way a screen that hides what lies at x < at_x of it.
+/// A luminous rectangle 2 m above the receiver. A screen half-way up hides its part at x < at_x.
 struct HalfHidden {
   explicit HalfHidden(double at_x) : at_x_m(at_x) {
     Builder screen;

@@ -1,4 +1,4 @@
-/// Direct light from luminaires with size and from skies, with something in the way.
+/// Direct light from luminaires with size and from skies, with obstacles in between.
 
 #include <gtest/gtest.h>
 
@@ -139,7 +139,7 @@ TEST(DirectShapeLight, AWallWithAHoleIsNotTakenForAWhole) {
 }
 
 TEST(DirectShapeLight, WhatCannotContributeCastsNoRay) {
-  Builder clutter;  // between everything and everything
+  Builder clutter;  // in the way of every lamp
   clutter.quad({-0.3, -0.3, 1}, {0.3, -0.3, 1}, {0.3, 0.3, 1}, {-0.3, 0.3, 1});
   clutter.quad({-0.3, -0.3, -1}, {0.3, -0.3, -1}, {0.3, 0.3, -1}, {-0.3, 0.3, -1});
   const Scene scene = clutter.done();

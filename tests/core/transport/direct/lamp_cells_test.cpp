@@ -12,7 +12,7 @@ namespace {
 
 const Eigen::AlignedBox3d kHall_m(Vec3(0, 0, 0), Vec3(40, 20, 4));
 
-/// Spots below the ceiling that look anywhere downwards, some of them two in one place, some off.
+/// Spots below the ceiling, aimed downwards at random. Some share a position, some are off.
 struct HallOfSpots {
   explicit HallOfSpots(int count) {
     std::mt19937 random(3);
@@ -69,7 +69,7 @@ TEST(LampCells, EveryLampThatLightsCanBeChosenAndChancesAddUpToOne) {
   EXPECT_GT(of_rest, 200);
 }
 
-/// Σ over evenly spaced choices of lux / density is the light of all lamps, be they weighed or of the rest.
+/// Σ lux / density over evenly spaced choices is the light of all lamps, those weighed one by one and the rest.
 TEST(LampCells, ChoicesGiveTheLightOfAllLamps) {
   const HallOfSpots hall(300);
   const Lamps lamps(hall.spots, hall.levels, kHall_m);
@@ -88,7 +88,7 @@ TEST(LampCells, ChoicesGiveTheLightOfAllLamps) {
                     1e-12 * choice.density);
       });
     }
-    // Each place is asked to within one choice.
+    // Even spacing samples each place to within one choice.
     EXPECT_NEAR(chosen_lx, exact_lx, 0.01 * exact_lx + 1e-9);
   }
 }

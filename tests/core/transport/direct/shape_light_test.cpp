@@ -60,7 +60,7 @@ TEST(ShapeLight, DiffuseDisksFollowTheClosedFormForAFacingReceiver) {
     const double expected = parallel_disk_form(r, h, a);
     const Vec3 p(a * std::cos(turn), a * std::sin(turn), -h);
     const auto light = shape_light(p, Vec3::UnitZ(), emitter, {1e-6, 100'000});
-    // Far away the form itself is a difference of like numbers.
+    // Far away the closed form itself cancels: a difference of nearly equal numbers.
     EXPECT_NEAR(light.lux, expected, 1e-6 * expected + 1e-14) << r << " " << h << " " << a;
   }
 }
@@ -73,7 +73,7 @@ TEST(ShapeLight, DiffuseSpheresFollowTheClosedFormAlsoWhenPartlyBelowTheHorizon)
     const double distance_m = radius_m * (1 + std::exp(random.between(-4, 3)));
     const Vec3 away = random.direction(), p = distance_m * away;
     Vec3 n = random.direction();
-    if (i % 2 == 0)  // half of them with the horizon through the sphere
+    if (i % 2 == 0)  // for half of them the horizon cuts the sphere
       n = (n - n.dot(away) * away).normalized() + random.between(-1, 1) * radius_m / distance_m * away;
     n.normalize();
     const Emitter emitter{
@@ -91,7 +91,7 @@ struct Sum {
   double lux, error_lx;
 };
 
-/// By the definition, over directions drawn in jittered strata: slow and plain.
+/// By definition: directions drawn in jittered strata. Slow and simple.
 Sum by_definition(const Vec3& p, const Vec3& n, const Emitter& emitter, int side) {
   const Pose& pose = emitter.world_from_lamp;
   const Vec3 p_lamp = pose.inverse_direction(p - pose.translation_m), n_lamp = pose.inverse_direction(n);
@@ -109,7 +109,7 @@ Sum by_definition(const Vec3& p, const Vec3& n, const Emitter& emitter, int side
       sum2 += lux * lux;
     }
   const double count = side * side, mean = sum / count;
-  return {mean, std::sqrt(std::max(0.0, sum2 / count - mean * mean) / count)};  // strata make it better than that
+  return {mean, std::sqrt(std::max(0.0, sum2 / count - mean * mean) / count)};  // upper bound: strata reduce the error
 }
 
 TEST(ShapeLight, AnyDistributionOnAnyShapeFollowsTheDefinition) {
@@ -137,7 +137,7 @@ TEST(ShapeLight, AnyDistributionOnAnyShapeFollowsTheDefinition) {
 }
 
 TEST(ShapeLight, TheEstimatedErrorBoundsTheTrueOne) {
-  // True: by the same integral to 1e-9. Fewer than one in a hundred may be off by more than estimated.
+  // Truth: the same integral to 1e-9. At most one in a hundred may be off by more than estimated.
   Random random(5);
   const Intensity intensities[] = {diffuser(100), std::make_shared<Power>(8), make_spot(1000, 0.5, 0.9)};
   int lit = 0, beyond = 0;
@@ -159,7 +159,7 @@ TEST(ShapeLight, TheEstimatedErrorBoundsTheTrueOne) {
 }
 
 TEST(ShapeLight, AtFiveTimesItsLargestSizeADiffuserIsAPointToOnePercent) {
-  // The five-times rule of photometry: on the axis of a disk, point over true is exactly 1 + (r/d)².
+  // The five-times rule of photometry: on the axis of a disk, point / exact = 1 + (r/d)².
   const Vec3 up = Vec3::UnitZ();
   const auto excess = [&](const LuminousShape& shape, const Vec3& p) {
     const double as_shape = illuminance_lx(p, up, {diffuser(100), {}, shape});
@@ -168,7 +168,7 @@ TEST(ShapeLight, AtFiveTimesItsLargestSizeADiffuserIsAPointToOnePercent) {
   EXPECT_NEAR(excess(disk(1), {0, 0, -5}), 0.01, 1e-7);
   EXPECT_NEAR(excess(disk(1), {0, 0, -10}), 0.0025, 1e-7);
   EXPECT_NEAR(excess(disk(1), {0, 0, -1}), 0.25, 1e-6);
-  EXPECT_NEAR(excess(rectangle(1, 1), {0, 0, -5}), 0.01333, 2e-5);  // 2 a²/6 / d²; by its side, not its diagonal
+  EXPECT_NEAR(excess(rectangle(1, 1), {0, 0, -5}), 0.01333, 2e-5);  // 2 a²/6 / d², at 5 sides (next: 5 diagonals)
   EXPECT_NEAR(excess(rectangle(1, 1), {0, 0, -5 * std::sqrt(2)}), 0.0066, 1e-4);
   EXPECT_NEAR(excess(rectangle(1.2, 0.2), {0, 0, -5 * 1.2}), 0.0068, 1e-4);
   for (double offset_m = 0; offset_m < 20; offset_m += 0.5) {
@@ -207,7 +207,7 @@ TEST(ShapeLight, WithinInThePlaneOrBelowTheHorizonThereIsNoLight) {
   EXPECT_EQ(lux(sphere(1), {0, 0, -1}, -up), 0);
   EXPECT_GT(lux(sphere(1), {0, 0, -1}, Vec3::UnitX()), 0) << "half of it is above the horizon";
   EXPECT_GT(lux(cylinder(1, 1), {0, 0, -1}, Vec3::UnitX()), 0);
-  // Sizes of nothing.
+  // Sizes of zero.
   EXPECT_EQ(lux(rectangle(0, 1), {0, 0, -1}, up), 0);
   EXPECT_EQ(lux(rectangle(-1, 1), {0, 0, -1}, up), 0);
 }
@@ -224,7 +224,7 @@ TEST(ShapeLight, NearTheSurfaceADiffuserGivesPiTimesItsLuminance) {
 }
 
 TEST(ShapeLight, AllThatAShapeSendsArrivesOnASphereAroundIt) {
-  // Flux through a sphere about the lamp, by a product rule over directions: its flux, whatever the shape.
+  // Flux through a sphere around the lamp, by a product rule over directions, equals the lamp's flux for any shape.
   const Intensity intensity = std::make_shared<Power>(4);
   const Vec3 turn(0.3, -0.2, 0.5);
   for (const auto& shape : {rectangle(0.6, 0.4), disk(0.7), sphere(0.5), cylinder(0.3, 0.8)}) {

@@ -34,7 +34,7 @@ TEST(GatherEvaluator, AgreesWithPathsInTheFlatForFarFewerRays) {
 }
 
 TEST(GatherEvaluator, SmallErrorsAreReachedAndStayCheaperThanPaths) {
-  // Records have noise of their own, which more paths that end in them do not take away.
+  // Records have their own noise, which more paths ending in them do not reduce.
   const LitRoom room = make_box_room();
   const RayScene rays(room.scene);
   const auto gather = evaluated(make_gather_evaluator(rays), room.receivers, room.emitters, within(0.01));
@@ -46,8 +46,8 @@ TEST(GatherEvaluator, SmallErrorsAreReachedAndStayCheaperThanPaths) {
 }
 
 TEST(GatherEvaluator, ARoomWhereNobodyCanShareEnds) {
-  // All walls varnished, the lamp in a corner: no record has a place. With this seed all points
-  // go on alone after 14 million rays.
+  // All walls varnished, the lamp in a corner: no record can be used. With this seed all points go on alone after 14
+  // million rays.
   Scene box = make_cube(4, 0.3);
   for (auto& corner : box.vertices_m) corner.z() *= 0.75f;
   for (Material& wall : box.materials) wall.specular_reflectance = 0.04, wall.roughness = 0.1;
@@ -64,7 +64,7 @@ TEST(GatherEvaluator, ARoomWhereNobodyCanShareEnds) {
 TEST(GatherEvaluator, AnRmsErrorIsReachedAndTakesFewerRaysThanTheSameErrorOfEachReceiver) {
   const LitRoom flat = make_eight_room_flat();
   const RayScene rays(flat.scene);
-  // Sampling stops where 2.5 standard errors are within the wanted error of each receiver.
+  // Sampling stops when 2.5 standard errors are within the wanted error at each receiver.
   const auto of_each = evaluated(make_gather_evaluator(rays), flat.receivers, flat.emitters, within(0.03));
   EvaluateOptions options = within(0.03, 2);
   options.wanted_rms_error = 0.03 / 2.5;
@@ -78,8 +78,8 @@ TEST(GatherEvaluator, AnRmsErrorIsReachedAndTakesFewerRaysThanTheSameErrorOfEach
   EXPECT_LT(apart(by_rms.lux(levels), of_each.lux(levels)), 1.5 * std::hypot(0.012, 0.012));
 }
 
-// Records lose in a sphere that reflects well, where all light is of many surfaces, and on a glossy floor: there the
-// wish was missed and nothing said. It is kept, with the error that is stated.
+// Records do badly in a sphere of high reflectance, where light comes from many bounces, and on a glossy floor. There
+// the wanted error was once missed silently. It must be reached, and the stated error must hold.
 TEST(GatherEvaluator, AWishIsReachedWhereRecordsLose) {
   Scene sphere = make_icosphere(2, 4, 0.9);
   std::vector<Receiver> receivers;

@@ -1,4 +1,4 @@
-/// Gather against the unbiased path tracer, and what is the same for both: colour, gloss, luminaires with size, skies.
+/// Gather against the unbiased path tracer, and features of both: colour, gloss, luminaires with size, skies.
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ TEST(GatherEvaluator, FewReceiversFallBackToTheirOwnPaths) {
   EXPECT_EQ(gather.lux_per_level, evaluated(make_path_evaluator(rays), receivers, lamps, within(0.02)).lux_per_level);
 }
 
-// What gets through doors is found by few paths, and by none at many points: their bars were 0 or next to it.
+// Few paths find light that passes doors; at many points none did. Their error bars were then zero or nearly zero.
 TEST(GatherEvaluator, WhatALampSendsIntoOtherRoomsIsNoBetterKnownThanItIsFound) {
   LitRoom flat = make_eight_room_flat();
   flat.emitters = {flat.emitters[2]};
@@ -52,7 +52,7 @@ TEST(GatherEvaluator, WhatALampSendsIntoOtherRoomsIsNoBetterKnownThanItIsFound) 
   EXPECT_GE(within_two, 0.93 * pairs);
 }
 
-// Where nothing is found, paths go on until it is known as well as was asked for.
+// Where paths find no light, they go on until darkness is known to the wanted error.
 TEST(PathEvaluator, APointInAClosedBoxIsDarkToTheWantedError) {
   Scene scene;
   scene.materials.resize(1);
@@ -67,7 +67,7 @@ TEST(PathEvaluator, APointInAClosedBoxIsDarkToTheWantedError) {
   EXPECT_LE(path.relative_error, 0.05 / EvaluateOptions::kStopMargin);
 }
 
-// Their own paths may have less than they all owe to records: that has to fall, too.
+// The noise of the receivers' own paths may be below the error they share through records. That error has to fall, too.
 TEST(GatherEvaluator, AFineRmsErrorContainsWhatRecordsAreOffBy) {
   const LitRoom room = make_box_room();
   const RayScene rays(room.scene);
@@ -82,7 +82,7 @@ TEST(GatherEvaluator, AFineRmsErrorContainsWhatRecordsAreOffBy) {
   }
 }
 
-/// Integrating sphere with walls that reflect each primary differently: each follows its own ρ/(1-ρ).
+/// Integrating sphere whose walls reflect each primary differently: each follows its own ρ/(1-ρ).
 TEST(PathEvaluator, EachPrimaryFollowsItsOwnReflectance) {
   Scene sphere = make_icosphere(2, 4, 0.5);
   const Vec3 reflectance(0.8, 0.5, 0.2);
@@ -103,7 +103,7 @@ TEST(PathEvaluator, EachPrimaryFollowsItsOwnReflectance) {
       for (int c = 0; c < 3; ++c) {
         const double reflected_lx = warm[c] * reflected_wall_illuminance_lx(1000, area_m2(sphere), reflectance[c]);
         const double expected_lx = warm[c] * matrix.direct_lux_per_level(r, 0) + reflected_lx;
-        // The wanted error is that of the whole; one primary, of strong reflection, may err more.
+        // The wanted error is that of the total. A single primary with high reflectance may err more.
         const double got_lx = matrix.rgb_per_level[static_cast<std::size_t>(c)](r, 0);
         EXPECT_NEAR(got_lx, expected_lx, 0.05 * expected_lx) << "receiver " << r << " primary " << c;
         lux += Vec3(0.2126, 0.7152, 0.0722)[c] * got_lx;
@@ -113,8 +113,8 @@ TEST(PathEvaluator, EachPrimaryFollowsItsOwnReflectance) {
   }
 }
 
-/// A closed room keeps all light that its walls do not absorb, glossy or not: with albedo a(θ) = Es + ρ (1 - Es) and
-/// ρ = Es-free body, the mean over the walls lies between the matt rooms of the least and the largest albedo.
+/// A closed room keeps all light that its walls do not absorb, glossy or not. The albedo is a(θ) = Es + ρ (1 - Es) with
+/// ρ of the body alone. So the mean over the walls lies between matt rooms of the lowest and the highest albedo.
 TEST(PathEvaluator, AGlossyRoomKeepsTheLightThatItsWallsReflect) {
   Scene cube = make_cube(2, 0.5);
   std::vector<Receiver> receivers;
@@ -128,13 +128,13 @@ TEST(PathEvaluator, AGlossyRoomKeepsTheLightThatItsWallsReflect) {
   };
   const double matt_lx = mean_lx(0, 0.5);
   EXPECT_NEAR(matt_lx, mean_wall_illuminance_lx(1000, area_m2(cube), 0.5), 0.01 * matt_lx);
-  // Coat of 0.04: albedo from 0.52 straight on to about 0.6 on the average of a hemisphere.
+  // Coat of 0.04: albedo from 0.52 at normal incidence to about 0.6 averaged over the hemisphere.
   const double varnished_lx = mean_lx(0.04, 0.4);
   EXPECT_GT(varnished_lx, mean_wall_illuminance_lx(1000, area_m2(cube), 0.51));
   EXPECT_LT(varnished_lx, mean_wall_illuminance_lx(1000, area_m2(cube), 0.60));
 }
 
-/// A luminaire with size reflects as the point lamps that would fill it.
+/// A luminaire with size is reflected like the point lamps that would fill it.
 TEST(PathEvaluator, APanelReflectsAsManyPointsInItsPlaceWould) {
   const RayScene rays(make_cube(3, 0.6));
   Emitter panel = bulb(1000, {0.2, 0.1, 1.2});
@@ -158,11 +158,10 @@ TEST(PathEvaluator, APanelReflectsAsManyPointsInItsPlaceWould) {
   for (Eigen::Index r = 0; r < 3; ++r) EXPECT_NEAR(one.lux_per_level(r, 0), all[r], 0.02 * all[r]) << r;
 }
 
-/// A uniform sky over a pit that reflects nothing and one that reflects: between the two lies less than ρ/(1-ρ) of the
-/// light that enters.
+/// A uniform sky over an open box. Reflected light is less than ρ/(1-ρ) of the light that enters.
 TEST(PathEvaluator, SkylightEntersThroughAnOpeningAndIsReflected) {
   Scene box = make_cube(2, 0.5);
-  // Take the lid off: the two triangles whose vertices all lie at z = 1.
+  // Remove the lid: the two triangles whose vertices all lie at z = 1.
   for (std::size_t t = box.triangles.size(); t-- > 0;) {
     bool lid = true;
     for (const auto v : box.triangles[t]) lid = lid && box.vertex_world_m(v).z() > 0.99;
@@ -177,13 +176,13 @@ TEST(PathEvaluator, SkylightEntersThroughAnOpeningAndIsReflected) {
   const std::vector<Receiver> floor = {{{0, 0, -1}, Vec3::UnitZ()}};
   const RayScene rays(box);
   const auto matrix = evaluated(make_path_evaluator(rays), floor, {sky}, within(0.01));
-  // Middle of a square floor of edge 2 that looks at a parallel square of edge 2 at distance 2: four times the corner
-  // form factor of a quarter, a = b = 1 by h = 2.
+  // From the middle of a square floor of edge 2 to a parallel square of edge 2 at distance 2: four times the corner
+  // form factor of a quarter, a = b = 1, h = 2.
   const double a = 0.5;
   const double corner = (a / std::sqrt(1 + a * a) * std::atan(a / std::sqrt(1 + a * a))) / kPi;
   EXPECT_NEAR(matrix.direct_lux_per_level(0, 0), 4 * corner * 10'000, 0.01 * 4 * corner * 10'000);
-  // All light that enters the box falls on its walls once: 10 000 lx through 4 m²; reflected light is at most ρ/(1-ρ)
-  // of it spread over the walls, and some leaves by the opening.
+  // All light that enters falls on the walls: 10 000 lx through 4 m². Reflected light is at most ρ/(1-ρ) of it spread
+  // over the walls. Some leaves through the opening.
   const double reflected_lx = matrix.lux_per_level(0, 0) - matrix.direct_lux_per_level(0, 0);
   EXPECT_GT(reflected_lx, 0.3 * 10'000 * 4 / 20 * 0.5);
   EXPECT_LT(reflected_lx, 10'000 * 4.0 / 20 * 2);

@@ -1,4 +1,4 @@
-/// Light traced from the lamps, by group: how it is shared out and what the pools hold.
+/// Light traced from the lamps, by group: its shares and the contents of the pools.
 
 #include "core/transport/paths/hit_pool.h"
 
@@ -33,7 +33,7 @@ TEST(LampGroups, SharesAddUpAndGroupsKeepTheFluxOfTheirLamps) {
     for (std::size_t g = 0; g < lamps.groups(); ++g) {
       shares += lamps.group_share(g);
       EXPECT_NEAR(lamps.group_share(g), group_lm[g] / all_lm, 1e-12);
-      // Whatever lamp of the group a number picks, flux of the sample is that of the whole group.
+      // Whichever lamp of the group is drawn, the sample carries the flux of the whole group.
       for (const double u : {0.0, 0.31, 0.77, 0.999999}) {
         const LampRay ray = lamps.emit(g, u, 0.4, 0, 0);
         EXPECT_EQ(lamps.group_of(ray.emitter), g);
@@ -45,7 +45,7 @@ TEST(LampGroups, SharesAddUpAndGroupsKeepTheFluxOfTheirLamps) {
 }
 
 TEST(LampGroups, WeighingFindsEveryLampThatLights) {
-  // Spots whose beam just reaches or just misses a point: a weight of zero where there is light would be a bias.
+  // Spots whose beam just reaches or just misses a point. A weight of zero where there is light would cause bias.
   std::vector<Emitter> spots;
   for (int i = 0; i < 200; ++i) {
     const double tilt = 0.01 * i, c = std::cos(tilt), s = std::sin(tilt);
@@ -81,7 +81,7 @@ TEST(HitPool, RefillsGoOnInTheSequenceAndKeepWholeNets) {
   EXPECT_EQ(pool.count(0), 8u);
   EXPECT_TRUE(pool.hits(1).empty());
   EXPECT_EQ(pool.shining(0).size(), 8u) << "all light of a closed room lands";
-  // The next 16 start at 16: aligned to their number.
+  // The next 16 start at 16: aligned to a multiple of their count.
   pool.refill(lights, 5, std::vector<std::uint32_t>{16, 4}, weights);
   const SobolSequence first(mixed(5, 0)), second(mixed(5, 1));
   for (std::uint32_t i = 0; i < 16; ++i)

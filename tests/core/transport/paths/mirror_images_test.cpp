@@ -1,4 +1,4 @@
-// A smooth floor shows the lamps: the law of the mirror says how bright.
+// A smooth floor mirrors the lamps. The law of reflection gives the brightness.
 #include "core/transport/paths/mirror_images.h"
 
 #include <gtest/gtest.h>
@@ -11,9 +11,9 @@
 namespace luxrig {
 namespace {
 
-constexpr double kFlux = 4 * 3.14159265358979323846 * 100;  // 100 cd all round
+constexpr double kFlux = 4 * 3.14159265358979323846 * 100;  // 100 cd in all directions
 
-/// A floor of 8 m × 8 m that reflects by its coat alone.
+/// A floor of 8 m × 8 m that reflects only by its coat.
 Scene smooth_floor(double specular, double roughness) {
   Scene scene;
   scene.vertices_m = {{-4, -4, 0}, {4, -4, 0}, {4, 4, 0}, {-4, 4, 0}};
@@ -38,7 +38,7 @@ Emitter bare_lamp(const Vec3& position_world_m, double diameter_m = 0) {
   return lamp;
 }
 
-/// Looking down, below the lamps: lit by the floor alone.
+/// Below the lamps and looking down: lit only by the floor.
 std::vector<Receiver> below_the_lamps() {
   std::vector<Receiver> receivers;
   for (int i = 0; i < 30; ++i) receivers.push_back({{0.05 * i - 0.7, 0.3, 1.2}, -Vec3::UnitZ()});
@@ -58,7 +58,7 @@ TEST(MirrorImages, PlacesAreDrawnAsOftenAsTheirDensitySays) {
   std::uniform_real_distribution<double> unit;
   constexpr int kDraws = 400'000;
   for (std::size_t lamp = 0; lamp < 2; ++lamp) {
-    // ∫ over a part of the floor of (draws / density) is its area, wherever it lies.
+    // ∫ (draws / density) over any part of the floor is the area of that part.
     double near_m2 = 0, wide_m2 = 0;
     for (int i = 0; i < kDraws; ++i) {
       const auto place = images.draw(choice, from, unit(random), unit(random), unit(random));
@@ -87,7 +87,7 @@ TEST(MirrorImages, NoneWhereNothingIsSmooth) {
 
 class Mirror : public testing::TestWithParam<std::unique_ptr<Evaluator> (*)(const RayScene&)> {};
 
-// E = F(θ) I cosθ / d² with d the way by the mirror. Facets of slope α = 0.0025 blur it by far less than is asked here.
+// E = F(θ) I cosθ / d², with d the path length via the mirror. Facet slope α = 0.0025 blurs it far below the tolerance.
 TEST_P(Mirror, AFloorLikeAMirrorLightsAsTheImageOfItsLampWould) {
   const Vec3 at(0.6, -0.2, 1.7);
   const auto receivers = below_the_lamps();

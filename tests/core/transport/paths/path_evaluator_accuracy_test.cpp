@@ -16,8 +16,8 @@ namespace {
 
 using namespace path_evaluator_fixture;
 
-// Flux is conserved in any closed enclosure, so the mean over its walls is known for any place of the source. Few paths
-// per receiver are enough, since estimates are unbiased; the midpoint rule over the grid is good to 0.2 %.
+// A closed enclosure conserves flux, so the mean over its walls is known for any position of the source. Few paths per
+// receiver are enough because estimates are unbiased. The midpoint rule over the grid is good to 0.2 %.
 TEST(PathEvaluator, MeanOfAClosedCubeIsFluxOverAreaTimesOneMinusReflectance) {
   std::vector<Receiver> receivers;
   for (const WallPoint& p : cube_wall_grid(3, 12)) receivers.push_back({p.position_m, p.normal});
@@ -28,7 +28,8 @@ TEST(PathEvaluator, MeanOfAClosedCubeIsFluxOverAreaTimesOneMinusReflectance) {
     EvaluateOptions options = within(0.005);
     options.max_rays = 2'000'000;
     const auto matrix = path(rays, receivers, {bulb_at(1000, {0.3, -0.2, 0.4})}, options);
-    // Receivers share light hits, so their errors go together: the error of the mean is that of the replicates' means.
+    // Receivers share light hits, so their errors correlate. The error of the mean is the error of the replicates'
+    // means.
     std::vector<double> means_lx;
     for (const auto& replicate : matrix.replicates) means_lx.push_back(replicate.mean());
     const double error_lx = standard_error_of_mean(means_lx);
@@ -48,15 +49,14 @@ TEST(PathEvaluator, IntegratingSphereReflectsTheSameLightEverywhere) {
     const Eigen::VectorXd error_lx = matrix.standard_error_lux(Eigen::VectorXd::Ones(1));
     for (Eigen::Index r = 0; r < matrix.receivers(); ++r) {
       const double reflected_lx = matrix.lux_per_level(r, 0) - matrix.direct_lux_per_level(r, 0);
-      // Facets are seen slightly tilted, so the wall is even only to the square of their half angle (0.03²).
+      // Facets are seen slightly tilted, so the wall is uniform only to the square of their half angle (0.03²).
       EXPECT_NEAR(reflected_lx, tessellated_lx, 3 * error_lx[r] + 0.001 * tessellated_lx) << r;
       EXPECT_NEAR(reflected_lx, tessellated_lx, 0.005 * matrix.lux_per_level(r, 0)) << r;
     }
   }
 }
 
-// Walls of one radiance ρE/π all around: every receiver inside, wherever it looks, gets ρE of reflected light.
-// Panels that fill the walls they lie in: every place gets M directly and M ρ/(1 − ρ) reflected.
+// Panels that fill their walls: every place gets M directly and M ρ/(1 − ρ) by reflection.
 TEST(PathEvaluator, LightOfPanelsFlushWithTheWallsIsReflectedInFull) {
   constexpr double kEdge_m = 3, kReflectance = 0.5, kExitance_lm_m2 = 100;
   const Scene scene = make_cube(kEdge_m, kReflectance);
@@ -84,6 +84,7 @@ TEST(PathEvaluator, LightOfPanelsFlushWithTheWallsIsReflectedInFull) {
   }
 }
 
+// All walls have the radiance ρE/π: every receiver inside gets ρE of reflected light in any direction.
 TEST(PathEvaluator, InAFurnaceEveryPlaceAndDirectionGetsTheSameReflectedLight) {
   const double reflectance = 0.7;
   const Scene sphere = make_icosphere(2, 4, reflectance);
@@ -108,7 +109,7 @@ TEST(PathEvaluator, AgreesWithRadiosityAtPointsOfACube) {
   const Scene cube = make_cube(edge_m, reflectance);
   const RayScene rays(cube);
   std::vector<Receiver> receivers = receivers_on(cube, 48);
-  std::erase_if(receivers, [](const Receiver& r) {  // near an edge the patches are too coarse a reference
+  std::erase_if(receivers, [](const Receiver& r) {  // patches are too coarse a reference near edges
     return (r.position_world_m.cwiseAbs().array() > 0.8).count() > 1;
   });
   ASSERT_GT(receivers.size(), 20u);
@@ -120,7 +121,7 @@ TEST(PathEvaluator, AgreesWithRadiosityAtPointsOfACube) {
   for (Eigen::Index r = 0; r < matrix.receivers(); ++r) {
     const Receiver& receiver = receivers[static_cast<std::size_t>(r)];
     const double reference_lx = fine.reflected_lx(receiver.position_world_m, receiver.normal_world);
-    // The patches' own error falls with the square of their size: a third of the step from coarse to fine.
+    // Error of the patches falls with the square of their size: a third of the change from coarse to fine.
     const double reference_error_lx =
         std::abs(reference_lx - coarse.reflected_lx(receiver.position_world_m, receiver.normal_world)) / 3;
     ASSERT_LT(reference_error_lx, 0.002 * reference_lx);
@@ -138,7 +139,7 @@ TEST(PathEvaluator, AgreesWithRadiosityAtPointsOfACube) {
 TEST(PathEvaluator, ReportedErrorsHoldAsOftenAsTheyClaim) {
   const Scene cube = make_cube(2, 0.5);
   const RayScene rays(cube);
-  // A narrow spot makes a small bright patch, a hard case for sampling; the receiver sees it but is not lit by it.
+  // A narrow spot makes a small bright patch, a hard case for sampling. The receiver sees it but gets no direct light.
   const std::vector<Emitter> emitters = {
       {make_spot(900, rad_from_deg(24), rad_from_deg(40)), lamp_at({0.3, 0.2, 0.9}, {0.4, -0.3, -1})},
       bulb_at(300, {-0.5, 0.1, 0.2})};
@@ -164,7 +165,7 @@ TEST(PathEvaluator, TheMeanOverSeedsHasNoBias) {
   const RayScene rays(cube);
   const Vec3 source_m(0.35, -0.2, 0.45);
   const Receiver receiver{{0.3, 0.1, -1}, Vec3::UnitZ()};
-  EvaluateOptions options = within(10);  // stops at once: the fewest samples, where a bias would show most
+  EvaluateOptions options = within(10);  // stops at once: fewest samples, where a bias would show most
   double sum = 0, squares = 0;
   constexpr int kSeeds = 100;
   for (int seed = 0; seed < kSeeds; ++seed) {

@@ -76,7 +76,7 @@ TEST(PathEvaluator, LampsThatReachNothingCastNoShadowRays) {
   const auto options = within(10);
   const auto alone = path(rays, receivers, {bulb_at(300, {-0.2, 0.1, 0.2})}, options);
   std::vector<Emitter> many = {bulb_at(300, {-0.2, 0.1, 0.2})};
-  // Outside the room, shining away from it.
+  // Outside the room, aimed away from it.
   for (int i = 0; i < 200; ++i)
     many.push_back({make_spot(900, rad_from_deg(24), rad_from_deg(40)), lamp_at({0.01 * i, 0, 5}, {0.01 * i, 0, 9})});
   EXPECT_EQ(path(rays, receivers, many, options).rays, alone.rays);

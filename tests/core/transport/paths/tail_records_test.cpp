@@ -1,4 +1,4 @@
-// Which record speaks for a place, and which records lie beside one another, against a search through all of them.
+// Finds the nearest record and neighbouring records, compared with a search through all records.
 #include "core/transport/paths/tail_records.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace {
 
 using Vertex = TailRecords::Vertex;
 
-/// On a floor of 6 m by 4 m about a point.
+/// Random places on a floor of 6 m by 4 m, scaled, from a corner.
 std::vector<Vertex> scattered(std::mt19937_64& random, std::size_t count, const Vec3& about_m, double scale) {
   std::uniform_real_distribution<double> unit(0, 1);
   std::vector<Vertex> places;
@@ -30,7 +30,7 @@ TEST(TailRecords, TheNearestIsThatOfASearchThroughAll) {
       const Vec3 about_m = Vec3(10, -20, 3) * scale;
       const std::vector<Vertex> places = scattered(random, count, about_m, scale);
       TailRecords records;
-      // In two goes, as they grow.
+      // Appended in two steps, as records grow.
       records.append(std::span(places).first(count / 2), 3);
       records.append(std::span(places).subspan(count / 2), 3);
       ASSERT_EQ(records.size(), count);
@@ -45,7 +45,7 @@ TEST(TailRecords, TheNearestIsThatOfASearchThroughAll) {
         ASSERT_NEAR(nearest->distance_m, min_m, 1e-5 * scale) << count << " records at scale " << scale;
         ASSERT_NEAR((records.place(nearest->record).position_world_m - from_m).norm(), min_m, 1e-5 * scale);
       }
-      // None is farther off than one and a half times their spacing.
+      // The nearest is at most one and a half spacings away.
       EXPECT_EQ(found, count == 400 ? 500 : found);
       EXPECT_FALSE(records.nearest(about_m, -Vec3::UnitZ())) << "the other side of the floor";
     }
@@ -56,7 +56,7 @@ TEST(TailRecords, ThoseBesideEachOtherAreSoMutuallyAndLieAlikeInOnePlane) {
   std::mt19937_64 random(2);
   const double apart_m = 3;
   std::vector<Vertex> places = scattered(random, 300, Vec3::Zero(), 1);
-  // A ceiling that looks down, a wall, and a floor above all that.
+  // A ceiling that looks down, a wall, and a floor above both.
   for (int i = 0; i < 300; ++i) {
     Vertex other = places[static_cast<std::size_t>(i)];
     const int kind = i % 3;

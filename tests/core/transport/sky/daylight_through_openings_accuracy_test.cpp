@@ -58,7 +58,7 @@ TEST_P(Daylit, AgreesWithPlainPathsWithinTheStatedErrors) {
   }
 }
 
-// The sun through the window lights a patch of the floor; what the room gets of it is Φ / (1 - ρ) less what leaves.
+// The sun through the window lights a patch of the floor. The room gets Φ / (1 - ρ) less the light that leaves.
 TEST(DaylightThroughOpenings, TheSunThroughAWindowLightsTheRoomAsPlainPathsFromItsPatchSay) {
   const RoomWithWindows room = with_a_small_window();
   const RayScene rays(room.scene());
@@ -66,7 +66,7 @@ TEST(DaylightThroughOpenings, TheSunThroughAWindowLightsTheRoomAsPlainPathsFromI
       evaluated(*make_path_evaluator(rays), room.desks(), under(make_sun(kTowardsSun, 50'000)), within(0.02));
   const Eigen::VectorXd error_lx = matrix.standard_error_lux(Eigen::VectorXd::Ones(1));
   EXPECT_LE(matrix.relative_error, 0.02);
-  // Plain paths that look for the sun from each surface they meet: it is a point for what is no penumbra.
+  // Plain paths that sample the sun at each surface they hit. The sun counts as a point; there is no penumbra.
   std::mt19937_64 random(11);
   std::uniform_real_distribution<double> unit(0, 1);
   for (std::size_t r = 0; r < room.desks().size(); ++r) {
@@ -110,7 +110,7 @@ TEST(DaylightThroughOpenings, StatedErrorsHoldTheTruthAsOftenAsTheyShould) {
     for (Eigen::Index r = 0; r < matrix.receivers(); ++r, ++all)
       inside += std::abs(matrix.lux_per_level(r, 0) - truth.lux_per_level(r, 0)) <= 2 * error_lx[r];
   }
-  // 95 % would be 152; those of one seed are not independent. Measured: 92 % of 400, 94.4 % of 1 600 of other seeds.
+  // 95 % would be 152, but receivers of one seed correlate. Measured: 92 % of 400; 94.4 % of 1 600 with other seeds.
   EXPECT_GE(inside, 138) << all;
   EXPECT_LT(inside, all);
 }
@@ -122,7 +122,7 @@ TEST(DaylightThroughOpenings, APictureShowsTheIlluminanceThatTheEvaluatorMeasure
   Camera camera;
   camera.eye_world_m = {3.5, 4.5, 1.6};
   camera.target_world_m = {1.5, 1.5, 0};
-  camera.vertical_fov_rad = 0.02;  // all pixels look at nearly the same place
+  camera.vertical_fov_rad = 0.02;  // all pixels look at nearly the same spot
   camera.width_px = camera.height_px = 5;
   PictureOptions options;
   options.wanted_relative_error = 0.05;

@@ -20,7 +20,7 @@ inline TransportMatrix evaluated(const Evaluator& evaluator, const std::vector<R
   return result ? std::move(*result) : TransportMatrix{};
 }
 
-/// A window of 4 % of its wall.
+/// A window of 4 % of its wall's area.
 inline RoomWithWindows with_a_small_window() {
   RoomWithWindows room;
   room.near_window_m = {1.5, 2.3, 1.2, 1.8};

@@ -7,8 +7,8 @@
 
 namespace luxrig {
 
-/// A grey room on grey ground, 4 m along x, 5 m along y, 3 m high, its floor at z = 0, with a window in the walls y = 0
-/// and y = 5 or a skylight, as wanted; turned about z.
+/// A grey room on grey ground: 4 m along x, 5 m along y, 3 m high, floor at z = 0. Optional windows in the walls y = 0
+/// and y = 5, optional skylight. The whole can be turned about z.
 struct RoomWithWindows {
   static constexpr double kWidth_m = 4, kDepth_m = 5, kHeight_m = 3;
   bool roof = true, ground = true;
@@ -53,7 +53,7 @@ struct RoomWithWindows {
     return scene;
   }
 
-  /// In the room, up to its walls but for half a metre.
+  /// Three points at desk height and one on the wall x = 0.
   [[nodiscard]] std::vector<Receiver> desks() const {
     std::vector<Receiver> desks;
     for (const double at_y : {0.6, 2.4, 4.4}) desks.push_back({world({1.3, at_y, 0.8}), Vec3::UnitZ()});
@@ -65,7 +65,7 @@ struct RoomWithWindows {
 struct BruteForce {
   double lux = 0, error_lx = 0;
 };
-/// Illuminance by plain paths that end where they meet nothing, in double: no light is asked for or sent anywhere.
+/// Illuminance by plain paths that end where they hit nothing, in double. Samples no light source.
 inline BruteForce lux_by_plain_paths(const RayScene& rays, const Receiver& receiver, const SkyLuminance& sky, int paths,
                                      std::uint64_t seed) {
   std::mt19937_64 random(seed);

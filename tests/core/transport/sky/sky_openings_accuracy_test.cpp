@@ -13,7 +13,7 @@ namespace {
 
 using namespace sky_openings_fixture;
 
-// ∫ cosθ dω over what the openings show, by their samples and by the form factor of a rectangle.
+// ∫ cosθ dω over the openings: by their samples, and on a fine grid of directions.
 TEST(SkyOpenings, SamplesAndTheirDensityMeasureTheFormFactor) {
   SkyOpening other = window();
   other.centre_world_m = {-1.7, 0.2, 1.9};
@@ -31,7 +31,7 @@ TEST(SkyOpenings, SamplesAndTheirDensityMeasureTheFormFactor) {
       const DirectionSample drawn = openings.sample(view, at_m, unit(random), unit(random), unit(random));
       ASSERT_NEAR(openings.density_per_sr(view, at_m, drawn.direction), drawn.density_per_sr,
                   1e-6 * drawn.density_per_sr);
-      // Directions that pass both openings count once, but have the density of both.
+      // A direction that passes both openings counts once; its density includes both.
       const double value = std::max(0.0, normal.dot(drawn.direction)) / drawn.density_per_sr;
       sum += value, squares += value * value;
     }

@@ -24,7 +24,7 @@ inline SkyOpenings found(const RoomWithWindows& room, std::uint64_t seed = 1, st
   return openings;
 }
 
-/// A rectangle of 2 m × 1 m that looks to -y, its lower edge at z = 1.
+/// A rectangle of 2 m × 1 m that faces -y, with its lower edge at z = 1.
 inline SkyOpening window() {
   SkyOpening opening;
   opening.centre_world_m = {0.3, 0, 1.5};

@@ -31,7 +31,7 @@ TEST(SkyOpenings, LinesAndTheirDensityMeasureTheAreaThatFacesTheLight) {
     ASSERT_GT(density, 0);
     sum += 1 / density;
   }
-  // The union of two equal parallelograms: along the light, the second moves by (0.1, 0.7) per metre that it is behind.
+  // Union of two equal parallelograms. Along the light, the second moves by (0.1, 0.7) per metre that it lies behind.
   const double dx = 0.5 + 0.1, dz = 0.2 + 0.7;
   const double both_m2 = (2 - dx) * (1 - dz);
   EXPECT_NEAR(sum / kLines, (2 + 2 - both_m2) * -towards.y(), 0.01);

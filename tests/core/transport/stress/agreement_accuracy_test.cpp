@@ -8,7 +8,7 @@
 namespace luxrig {
 namespace {
 
-/// A closed room with loose triangles that stand in the light, duplicate, touch and cut each other.
+/// A closed room with loose triangles that block the light, duplicate, touch and cut each other.
 HostileScene cluttered_room(std::uint64_t seed) {
   HostileScenes dice(seed);
   HostileScene made;
@@ -85,7 +85,7 @@ TEST(Agreement, OfPathWithABruteForcePathTracerIsWithinBothTheirErrors) {
       beyond_two += std::abs(lux[row] - truth.lux) > 2 * sigma_lx;
     }
   }
-  // One in twenty-two is beyond two standard errors by chance; five of 24 happen once in 300.
+  // By chance one in twenty-two is beyond two standard errors. Five of 24 happen once in 300.
   EXPECT_LE(beyond_two, 5) << "of " << count;
 }
 

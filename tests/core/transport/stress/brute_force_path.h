@@ -1,6 +1,6 @@
 #pragma once
-/// A plain path tracer to hold evaluators against: double precision, every triangle asked, no acceleration structure,
-/// no sampling scheme, nothing shared with the code under test but the Scene and the distributions' intensities.
+/// A plain path tracer as a reference for evaluators: double precision, every triangle tested, no acceleration
+/// structure, no sampling scheme. It shares only the Scene and the distributions' intensities with the code under test.
 
 #include <optional>
 #include <random>
@@ -32,9 +32,9 @@ class BruteForcePath {
     for (int i = 0; i < paths; ++i) {
       Vec3 at_m = receiver.position_world_m, normal = receiver.normal_world;
       double lux = 0;
-      Vec3 weight = Vec3::Ones();  // by primary: what a red wall sends to a green one is not what their means say
+      Vec3 weight = Vec3::Ones();  // per primary: the product of means would be wrong for red and green walls
       for (;;) {
-        // Cosine-weighted; each hit reflects with the probability of its best reflected primary.
+        // Cosine-weighted. Each hit reflects with the probability of its highest reflectance among the primaries.
         const double radius = std::sqrt(chance()), turn = 2 * kPi * chance();
         const Vec3 x = normal.cross(std::abs(normal.x()) < 0.7 ? Vec3::UnitX() : Vec3::UnitY()).normalized();
         const Vec3 direction = radius * std::cos(turn) * x + radius * std::sin(turn) * normal.cross(x) +
@@ -65,7 +65,7 @@ class BruteForcePath {
     std::size_t triangle;
   };
 
-  /// T. Möller and B. Trumbore (1997). What is nearer than 1e-7 of the distance asked for is the surface left.
+  /// T. Möller and B. Trumbore (1997). Hits nearer than 1e-7 of the distance asked for are the surface just left.
   std::optional<Crossing> nearest(const Vec3& from_m, const Vec3& direction, double most) const {
     std::optional<Crossing> found;
     for (std::size_t t = 0; t < triangles_.size(); ++t) {

@@ -1,7 +1,7 @@
 #pragma once
-/// Random scenes of everything that goes wrong in meshes people have: slivers, needles, duplicate and intersecting
-/// triangles, stacks of coplanar ones, every face twice, faces of 20 km through scenes of millimetres, lamps on
-/// surfaces, receivers on edges and vertices, from micrometres to a thousand kilometres, and far from the origin.
+/// Random scenes with every defect of real meshes: slivers, needles, duplicate and intersecting triangles, stacks of
+/// coplanar ones, every face twice, 20 km faces through millimetre scenes, lamps on surfaces, receivers on edges and
+/// vertices. Sizes run from micrometres to a thousand kilometres, also far from the origin.
 
 #include <random>
 #include <utility>
@@ -15,9 +15,9 @@ struct HostileScene {
   Scene scene;
   std::vector<Receiver> receivers;
   std::vector<Emitter> emitters;
-  /// A lamp is so near a receiver, for the size of their coordinates, that an evaluator may refuse it.
+  /// A lamp is too near a receiver for the size of their coordinates: an evaluator may refuse it.
   bool may_be_refused = false;
-  /// A lamp has size, or there is a sky: direct light is then sampled where something stands in between.
+  /// A lamp has size, or there is a sky. Direct light is then sampled if something is in the way.
   bool sized = false;
 };
 
@@ -46,7 +46,7 @@ class HostileScenes {
     made.scene.object_of_triangle.assign(made.scene.triangles.size(), 0);
     for (std::size_t t = 0; t < made.scene.triangles.size(); ++t)
       made.scene.material_of_triangle.push_back(static_cast<std::uint32_t>(below(3)));
-    // Enough to share what their paths find, now and then; all of them glossy, more often.
+    // Sometimes enough receivers to share paths; more often if all are glossy.
     const int receivers = below(glossy ? 3 : 12) == 0 ? 24 + below(12) : 1 + below(4), emitters = 1 + below(3);
     for (int i = 0; i < receivers; ++i) made.receivers.push_back({place(made.scene), normal(made.scene)});
     for (int i = 0; i < emitters; ++i) made.emitters.push_back(lamp(made.scene));
@@ -82,7 +82,7 @@ class HostileScenes {
     scene.triangles.push_back({first, first + 1, first + 2});
   }
 
-  /// Uncut, and so coarse in float: build_scene() cuts them.
+  /// Not cut, and therefore coarse in float: build_scene() cuts them.
   void huge_faces(Scene& scene) {
     const double size_m = std::exchange(size_m_, 1e4);
     const std::size_t before = scene.triangles.size();
@@ -125,11 +125,11 @@ class HostileScenes {
         return triangle(scene, a, a + u, a + 0.5 * u + std::pow(10, between(-7, -2)) * v);
       case 2:  // needle
         return triangle(scene, a, a + 2 * u, a + std::pow(10, between(-7, -2)) * v);
-      case 3:  // the same twice, once turned over
+      case 3:  // the same twice, once reversed
         triangle(scene, a, a + u, a + v);
         triangle(scene, a, a + u, a + v);
         return triangle(scene, a, a + v, a + u);
-      case 4:  // stack: planes apart by next to nothing, or nothing
+      case 4:  // stack: planes a tiny gap apart, or none
         for (int i = 0; i < 4; ++i) {
           const Vec3 lift = u.cross(v) * (i * (below(2) ? std::pow(10, between(-8, -3)) : 0.0));
           triangle(scene, a + lift, a + u + lift, a + v + lift);
@@ -138,7 +138,7 @@ class HostileScenes {
       case 5:  // two that cut each other
         triangle(scene, a, a + u, a + v);
         return triangle(scene, a + 0.3 * (u + v) - 0.5 * u.cross(v), a + 0.3 * (u + v) + 0.5 * u.cross(v), a + 0.7 * u);
-      default:  // a plate next to axes, as floors are
+      default:  // a plate parallel to the axes, like a floor
         return box(scene, Vec3(a.x(), a.y(), -1.2), Vec3(a.x() + 0.5, a.y() + 0.4, -1.2 + (below(2) ? 0.1 : 1e-6)));
     }
   }
@@ -166,7 +166,7 @@ class HostileScenes {
     }
   }
 
-  /// A face's own normal on either side, an axis, or any.
+  /// A face's own normal on either side, an axis, or random.
   Vec3 normal(const Scene& scene) {
     const auto& t = any_triangle(scene);
     const Vec3 a = scene.vertex_world_m(t[0]),
@@ -203,7 +203,7 @@ class HostileScenes {
     return made;
   }
 
-  /// A luminous surface, flat to the point of having no width, or a sky.
+  /// A luminous surface, possibly of zero width, or a sky.
   void give_size(HostileScene& made) {
     made.sized = true;
     Emitter& lamp = made.emitters.front();

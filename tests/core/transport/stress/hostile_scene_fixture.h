@@ -18,7 +18,7 @@ inline EvaluateOptions few_rays(const HostileScene& made, std::uint64_t seed, in
   options.seed = seed;
   options.threads = threads;
   options.wanted_relative_error = 0.1;
-  options.max_rays = made.receivers.size() < 24 ? 1'000 : 100'000;  // there, more than one round
+  options.max_rays = made.receivers.size() < 24 ? 1'000 : 100'000;  // many receivers take more than one round
   options.levels.assign(made.emitters.size(), 0.5);
   options.colour = seed % 3 == 0;
   return options;

@@ -1,4 +1,4 @@
-/// Ten thousand hostile scenes: whatever the mesh, an evaluator ends, and its numbers are numbers.
+/// Ten thousand hostile scenes: for any mesh an evaluator ends and returns finite numbers.
 
 #include "tests/core/transport/stress/hostile_scene.h"
 
@@ -15,8 +15,8 @@ namespace {
 
 using namespace hostile_scene_fixture;
 
-/// Of each share. Sanitizers make each scene many times slower and look at each access, not at chance: there a
-/// hundredth will do, and the test says so. LUXRIG_ALL_SCENES asks for all of them.
+/// Scenes per share. Sanitizers make each scene many times slower and check every access, so a hundredth is enough; the
+/// test reports it. LUXRIG_ALL_SCENES runs all of them.
 const int kScenes = test::kSanitized && std::getenv("LUXRIG_ALL_SCENES") == nullptr ? 10 : 1000;
 
 bool fine(const Eigen::MatrixXd& matrix) { return matrix.allFinite() && (matrix.array() >= 0).all(); }
@@ -30,7 +30,7 @@ void expect_sound(const TransportMatrix& matrix, const HostileScene& made, const
   for (const auto& replicate : matrix.replicates) ASSERT_TRUE(replicate.allFinite()) << replicate;
   ASSERT_TRUE(fine(matrix.standard_error_lux(levels)));
   ASSERT_TRUE(std::isfinite(matrix.relative_error) && matrix.relative_error >= 0);
-  // Direct light is part of the whole.
+  // Direct light is part of the total.
   const double slack = 1e-9 * (matrix.direct_lux_per_level.maxCoeff() + matrix.lux_per_level.maxCoeff());
   ASSERT_GE((matrix.lux_per_level - matrix.direct_lux_per_level).minCoeff(), -slack);
   if (options.colour && !matrix.rgb_per_level.empty()) {
@@ -41,7 +41,7 @@ void expect_sound(const TransportMatrix& matrix, const HostileScene& made, const
   }
 }
 
-/// One share of the scenes, so that several processors can work on them.
+/// One share of the scenes, so that several processors can work in parallel.
 class HostileShare : public testing::TestWithParam<int> {};
 INSTANTIATE_TEST_SUITE_P(OfTen, HostileShare, testing::Range(0, 10));
 
@@ -56,7 +56,7 @@ TEST_P(HostileShare, OfScenesGivesNoNaNNothingNegativeAndNothingInfinite) {
     const EvaluateOptions options = few_rays(made, seed, 1);
     std::optional<Eigen::MatrixXd> direct_lx;
     for (const Entry& entry : kEvaluators) {
-      // Each scene by direct light, and by path and gather in turns: those take their 5 ms.
+      // Direct light runs on every scene, path and gather on alternate ones: they take 5 ms each.
       if (entry.make != make_direct_evaluator && (entry.make == make_path_evaluator) != (i % 2 == 0)) continue;
       SCOPED_TRACE(entry.name);
       ++asked;
@@ -69,14 +69,14 @@ TEST_P(HostileShare, OfScenesGivesNoNaNNothingNegativeAndNothingInfinite) {
       }
       expect_sound(*matrix, made, options);
       if (HasFatalFailure()) return;
-      // Whoever computes it, direct light of a point is the same.
+      // Direct light of a point lamp is the same from any evaluator.
       if (made.sized) continue;
       if (!direct_lx) direct_lx = matrix->direct_lux_per_level;
       ASSERT_LE((*direct_lx - matrix->direct_lux_per_level).cwiseAbs().maxCoeff(), 1e-9 * direct_lx->maxCoeff());
     }
   }
-  // A quarter of a thousand scenes at most is refused, or this would test little. Ten scenes are no measure of that: of
-  // ten some must be worked out.
+  // At most a quarter of a thousand scenes may be refused, or the test would prove little. With ten scenes at least one
+  // result is required.
   if (kScenes == 1000) {
     EXPECT_LE(refused, asked / 4);
   }
