@@ -62,7 +62,7 @@ ShowController::State::State(const Rig& rig_in, const LightModel& model, std::sp
       estimator(rig, model),
       health(rig),
       samples(rig.luxmeters.size()),
-      zones(rig),
+      head_guard(rig),
       tells_of_lamp(fixtures_that_tell_of_lamps(rig)),
       powerless(rig.fixtures.size(), 0),
       lost(rig.fixtures.size()),
@@ -87,10 +87,7 @@ ShowController::State::State(const Rig& rig_in, const LightModel& model, std::sp
   program.joints = joints.empty() ? planned.joints : std::vector<Joints>(joints.begin(), joints.end());
   program.switched = switched_fixtures(rig);
   model_joints = program.joints;
-  for (const std::size_t f : zones.heads()) {
-    guarded.push_back({f, HeadWhereabouts(rig.fixtures[f])});
-    program.dims.push_back({f, 0, 0, {}, {}, false, {}});  // its aim is not known yet
-  }
+  program.dims = head_guard.first_dims();
   fade(Time{}, dark, dark, 0, FadeCurve::linear);
 }
 
@@ -453,7 +450,7 @@ void ShowController::step(Time now) {
   state.advance(now);
   state.watch_power(now);
   state.close_bypassed(now);
-  state.guard_heads(now);
+  state.head_guard.step(now, state.program, state.health);
   state.remember_levels(now);
 }
 

@@ -23,7 +23,7 @@ constexpr double kSmallestChange = 1e-4;
 /// Learns from a sample of every living meter. Lost meters take part as soon as they have one, since a believable
 /// sample is how a meter that was not believed comes back.
 void ShowController::State::take_sample(Time now) {
-  if (program.blackout || shared || !program.done(now) || too_much_lost() || dimmed_for_a_zone(now))
+  if (program.blackout || shared || !program.done(now) || too_much_lost() || any_dimmed_for_a_zone(program, now))
     return;  // not the light that was asked for
   if (phase == Phase::measuring ? solving != nullptr : now - sampled_at < kSampleEvery) return;
   std::vector<LuxReading> readings;

@@ -147,6 +147,7 @@ Result<void> ShowController::State::identify(Time now, std::size_t fixture, Dura
   if (parked(fixture)) return refusal("it is parked: apply a plan first");
   std::vector<Joints> looks(rig.fixtures.size());
   program.joints_at(now, looks);
+  const KeepOutZones& zones = head_guard.zones();
   if (const auto zone = zones.met(fixture, looks[fixture]))
     return refusal(fmt::format("it looks into keep-out zone \"{}\": turn it elsewhere first", zones.name(*zone)));
   auto one = std::find_if(identified.begin(), identified.end(),

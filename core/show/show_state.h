@@ -12,7 +12,7 @@
 #include "core/estimation/gain_estimator.h"
 #include "core/estimation/meter_samples.h"
 #include "core/show/desk_follower.h"
-#include "core/show/head_whereabouts.h"
+#include "core/show/head_guard.h"
 #include "core/show/health_watch.h"
 #include "core/show/identify.h"
 #include "core/show/scale_watch.h"
@@ -59,16 +59,6 @@ struct Identification {
   IdentifyPattern pattern;
 };
 
-/// A head that is watched for keep-out zones.
-struct GuardedHead {
-  std::size_t fixture = 0;
-  HeadWhereabouts where;
-  std::optional<Joints> told{};     ///< order at the last step
-  std::optional<JointBox> swept{};  ///< postures that `zone` was computed for
-  std::optional<Joints> swept_to{};
-  std::optional<std::size_t> zone{};  ///< that its beam could meet now
-};
-
 /// A correction that is solved beside the loop.
 struct Solving {
   enum class For { round, drift, hands } what = For::round;
@@ -86,8 +76,7 @@ struct ShowController::State {
   MeterSamples samples;
   OutputProgram program;
 
-  KeepOutZones zones;
-  std::vector<GuardedHead> guarded;         ///< one for each of program.dims
+  HeadGuard head_guard;
   std::vector<Joints> model_joints;         ///< per fixture: aim in the estimator's model
   std::vector<std::uint8_t> parking;        ///< per fixture, 1: parks when it is dark; empty = none
   std::vector<std::uint8_t> tells_of_lamp;  ///< per fixture, 1: its device reports a burnt-out lamp
@@ -214,12 +203,6 @@ struct ShowController::State {
                                                    const std::vector<std::size_t>& fixtures) const;
   void hear_desk(Time now, std::size_t index, const DeskFrame& frame);
   Result<void> identify(Time now, std::size_t fixture, Duration how_long);
-
-  // Keep-out zones (show_keep_out.cpp).
-  void guard_heads(Time now);
-  void guard_head(Time now, GuardedHead& head, HeadDim& dim, const Joints& wanted, const Joints& at_last, bool lit);
-  [[nodiscard]] bool dimmed_for_a_zone(Time now) const;
-  void tell_zones(ShowStatus& status) const;
 
   // Parking (show_park.cpp).
   Result<void> park(Time now, std::span<const std::size_t> fixtures);

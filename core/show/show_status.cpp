@@ -171,7 +171,7 @@ ShowStatus ShowController::State::status(Time now) const {
   tell_losses(status);
   tell_bypassed(status);
   scale.tell(status, measured);
-  tell_zones(status);
+  head_guard.tell(status, rig, program, shared);
   for (std::size_t d = 0; d < desks.size(); ++d) {
     if (desk_names[d].empty()) continue;
     const DeskFollower& desk = desks[d];
