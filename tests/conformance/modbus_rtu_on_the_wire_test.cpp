@@ -53,8 +53,7 @@ struct RealLine {
     while (now() < end) cycle(drive);
   }
   /// Runs until every meter has been read this many times and all levels have arrived, however long a busy machine
-  /// takes.
-  /// The bound of 60 s only ends a test that would hang. Returns true on success.
+  /// takes. The bound of 60 s only ends a test that would hang. Returns true on success.
   [[nodiscard]] bool run_until_read(std::size_t times, double drive) {
     const auto done = [&] {
       for (std::size_t meter = 0; meter < rig.luxmeters.size(); ++meter)
