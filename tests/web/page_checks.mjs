@@ -1,4 +1,4 @@
-// What the page must do with any daemon, mock or real. Each check throws with a sentence when it is not so.
+// Checks of the page that hold with any daemon, mock or real. Each throws with a sentence on failure.
 import assert from 'node:assert/strict';
 import { eventually } from './browser.mjs';
 

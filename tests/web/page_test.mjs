@@ -262,5 +262,5 @@ try {
 } finally {
   await browser.close();
 }
-// After a failure the daemon's stand-in still listens, and would keep this process.
+// After a failure the mock daemon still listens, and would keep this process alive.
 process.exit(process.exitCode ?? 0);
