@@ -35,7 +35,7 @@ const std::vector<Kind>& kinds() {
   return all;
 }
 
-/// Cycles until all is well. On a busy machine, a driver that waits in real time may give up once on the way.
+/// Runs cycles until all is well. On a busy machine, a driver that waits in real time may give up once on the way.
 bool reaches(Subject& subject, double drive) {
   subject.settle(drive);
   const auto there = [&] { return subject.at(drive) && subject.bus().life == Life::active; };

@@ -48,8 +48,9 @@ TEST(Show, GoesAsNearToAGoalAtItsLimitAsTheMetersToleranceLetsItAndSaysSo) {
       // The aim is 50 lx, 48 lx are reached, and the meter may be 4 % wrong. 10 % allow that, 5 % would not.
       EXPECT_NE(status.points[work].verdict, Verdict::missed) << status.points[work].reason;
       EXPECT_NE(status.points[work].why.find("limit"), std::string::npos) << status.points[work].why;
-      // For 50 lx and a meter that may be 4 % wrong, it may show at most 48 lx. Less 2 % (control.tolerance) that are
-      // not worth another round, and less up to 3 % for noise and for the change of a dimmer's gain at the next levels.
+      // With a limit of 50 lx and a meter that may be 4 % wrong, it may show at most 48 lx. A shortfall of 2 %
+      // (control.tolerance) is not worth another round, and up to 3 % stay free for noise and for a dimmer's gain at
+      // the next levels.
       EXPECT_GE(*status.points[work].measured_lx, 0.95 * 48) << "seed " << seed << " " << loop.describe();
       EXPECT_LE(*status.points[work].measured_lx, 1.01 * 48) << "seed " << seed << " " << loop.describe();
     }

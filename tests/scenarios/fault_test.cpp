@@ -192,8 +192,7 @@ TEST(ACoveredMeter, IsNotTakenAtItsWordUntilAPersonAppliesThePlanAgain) {
   loop.apply();
   ASSERT_TRUE(loop.run_until(Phase::holding, 30));
   loop.run(3);
-  loop.fault("meter-6", sim::FaultKind::lying, true, 0.7);  // within the model's tolerance, but not equal to earlier
-                                                            // readings
+  loop.fault("meter-6", sim::FaultKind::lying, true, 0.7);  // allowed by the model, but not by earlier readings
   ASSERT_TRUE(loop.run_until(Phase::safe, 20)) << loop.describe();
   loop.run(60);
   EXPECT_EQ(loop.phase(), Phase::safe) << loop.describe();

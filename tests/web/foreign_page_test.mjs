@@ -14,7 +14,7 @@ const daemon = spawn(luxrig, ['run', source('tests/rigs/room'), '--sim', '--port
 let log = '';
 for (const out of [daemon.stdout, daemon.stderr]) out.on('data', (part) => (log += part));
 
-/** Everything a page can send; runs in it. */
+/** Sends everything that a page can send; runs in the page. */
 async function attack(rig) {
   const body = '{"on":true}';
   const host = new URL(rig).host;

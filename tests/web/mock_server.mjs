@@ -11,7 +11,7 @@ const TYPES = { '.html': 'text/html; charset=utf-8', '.js': 'text/javascript', '
 const wobble = (seed, t) => Math.sin(seed * 12.9898 + t * 1.7) * 0.6 + Math.sin(seed * 78.233 + t * 0.31) * 0.4;
 const round = (value, digits) => Number(value.toFixed(digits));
 
-/** The scripted show: at which second of it what happens. */
+/** The scripted show: events by second. */
 const SCRIPT = [
   { from: 0, phase: 'fading', share: (t) => t / 4, miss: 0.12 },
   { from: 4, phase: 'settling', miss: 0.12 },

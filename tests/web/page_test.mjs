@@ -19,7 +19,7 @@ const option = (name) => {
 const DESKTOP = { width: 1440, height: 900 };
 const PHONE = { width: 390, height: 844 };
 
-/** Prints what held; the first that does not ends the run. */
+/** Prints each check that held; the first failure ends the run. */
 async function check(what, body) {
   const started = Date.now();
   try {
