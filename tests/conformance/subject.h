@@ -29,7 +29,7 @@ class Subject {
   /// One cycle of the control loop: calls, and the time that it takes.
   virtual void cycle(double drive) = 0;
   [[nodiscard]] virtual Duration period() const = 0;
-  /// Cycles until a peer that obeys at once has obeyed.
+  /// Runs cycles until a peer that obeys at once has obeyed.
   virtual void settle(double drive, int obeys_within = 8) {
     for (int i = 0; i < obeys_within; ++i) cycle(drive);
   }
