@@ -1,4 +1,4 @@
-/// The suite of all drivers can fail: each driver that is broken on purpose is caught by the test that is there for it.
+/// Shows that the suite of all drivers can fail: the test for each fault catches the driver that is broken on purpose.
 
 #include "tests/conformance/broken_driver.h"
 
@@ -18,8 +18,8 @@ struct Ran {
   std::string said;
 };
 
-/// One test of EveryDriver in a process of its own, with every driver broken so. Which shard of tests this process runs
-/// is not for that one.
+/// Runs one test of EveryDriver in its own process, with every driver broken in this way. That process ignores the
+/// shard of this one.
 Ran run_suite(const Breakage& breakage) {
   const std::string program = (test::program_folder() / "conformance_tests").string();
   const std::string command = std::string("exec env -u GTEST_TOTAL_SHARDS -u GTEST_SHARD_INDEX ") + kBreakVariable +

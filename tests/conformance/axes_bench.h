@@ -1,5 +1,5 @@
 #pragma once
-/// The canopen driver and simulated axes on one wire without sockets, under one stepped clock: exact, and quick.
+/// The canopen driver and simulated axes on one wire without sockets, under one stepped clock: exact and fast.
 
 #include <deque>
 #include <functional>
@@ -42,7 +42,7 @@ class AxesBench {
     if (!driver->activate(now)) throw std::runtime_error("not activated");
   }
 
-  /// One cycle of the control loop; `commands` as the daemon's.
+  /// One cycle of the control loop, with the commands that the daemon sends.
   void cycle() {
     now += driver->bounds().write_period;
     run_world(now);
@@ -51,7 +51,7 @@ class AxesBench {
     result = driver->mover()->move(now, commands);
     if (each_cycle) each_cycle();
   }
-  /// The far end alone: nobody drives.
+  /// Steps the far end only; no driver runs.
   void run_world(Time until) {
     while (world->now() + sim::kTick <= until) {
       axes->advance(world->now() + sim::kTick);
@@ -65,7 +65,7 @@ class AxesBench {
   void run(double seconds) {
     for (const Time end = now + from_seconds(seconds); now < end;) cycle();
   }
-  /// Until it is so, or seconds are over.
+  /// Runs until so() is true or the seconds are over.
   bool run_until(double seconds, const std::function<bool()>& so) {
     for (const Time end = now + from_seconds(seconds); now < end;) {
       cycle();
@@ -73,7 +73,7 @@ class AxesBench {
     }
     return so();
   }
-  /// Homed, and where `aim` is.
+  /// Runs until the head is homed and points at `aim`.
   bool arrive(double seconds = 60) {
     return run_until(seconds, [this] { return result && aim && turned_deg(joints(), *aim) < 0.05; });
   }
@@ -95,12 +95,12 @@ class AxesBench {
   Time now{};
   std::optional<Joints> aim;
   Result<void> result;
-  Time moved_at{};                  ///< when the beam moved last
+  Time moved_at{};                  ///< time of the beam's last movement
   std::vector<Joints> path;         ///< every 10 ms
   std::vector<can::CanFrame> sent;  ///< by the driver
   std::function<void()> each_cycle;
-  std::function<void(can::CanFrame&)> lie;  ///< changes what a node says
-  can::Sent taken = can::Sent::yes;         ///< what the wire says to a frame
+  std::function<void(can::CanFrame&)> lie;  ///< changes the frames of a node
+  can::Sent taken = can::Sent::yes;         ///< the wire's answer to a frame
   std::optional<Fault> broken;              ///< the interface is down
   int opened = 0;
 

@@ -1,5 +1,4 @@
-// What a head's beam does when things go wrong, judged by where the simulated joints truly are: no axis ever moves
-// unasked.
+// A head's beam under faults, judged by the true angles of the simulated joints: no axis ever moves unasked.
 #include <gtest/gtest.h>
 
 #include "core/output/head_move.h"
@@ -65,7 +64,7 @@ TEST(Axes, EveryHomingMethodFindsTheHomePosition) {
     bench.aim = AxesBench::deg(12, 34);
     EXPECT_TRUE(bench.run_until(90, [&] { return bench.result.has_value() && bench.pan().homed(); })) << method;
     bench.run(20);
-    // An index comes every turn of the motor, 10° of the joint: which one is home is the rig file's to say.
+    // An index comes every turn of the motor, 10° of the joint: the rig file must say which one is home.
     const bool index = method < 3 || method == 33 || method == 34;
     const double pan_off = deg_from_rad(bench.joints().pan_rad) - 12,
                  tilt_off = deg_from_rad(bench.joints().tilt_rad) - 34;
@@ -150,7 +149,7 @@ struct OnItsWay : AxesBench {
 
 TEST(AxesFaults, ALostAxisStopsTheOtherAndBothGoOnWhenItIsBack) {
   OnItsWay bench;
-  bench.faults.set(kPan, FaultKind::silent, true);  // its cable: it hears no master either
+  bench.faults.set(kPan, FaultKind::silent, true);  // its cable is cut: it does not hear the master either
   const Time gone = bench.now;
   ASSERT_TRUE(bench.run_until(1, [&] { return bench.health(1).life == Life::faulted; }));
   EXPECT_LE(bench.now - gone, bench.driver->bounds().fault_after + bench.driver->bounds().write_period);
@@ -182,7 +181,7 @@ TEST(AxesFaults, AnAxisThatResetsIsSetUpAndHomedAnewAndTheOtherWaits) {
   EXPECT_FALSE(bench.tilt().homed());
   bench.run(0.5);
   EXPECT_EQ(bench.pan().speed_deg_s(), 0);
-  // What waits for the head is not told that it is back while its beam still travels.
+  // The head is not reported as back while its beam still travels.
   bench.each_cycle = [&] {
     if (bench.result) {
       EXPECT_LT(AxesBench::turned_deg(bench.joints(), *bench.aim), 0.6);
@@ -326,7 +325,7 @@ TEST(AxesFaults, AHeadOrderedFromAPositionThatWasWrongGetsThereAllTheSame) {
     bench.run(0.3 + 0.07 * i);
     bench.faults.clear();
     EXPECT_TRUE(bench.arrive(60)) << i << ": " << bench.health(1).detail;
-    bench.run(31);  // faults in a row are forgiven
+    bench.run(31);  // faults in a row are forgotten
   }
 }
 

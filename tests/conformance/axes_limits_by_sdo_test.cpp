@@ -1,5 +1,5 @@
-// Drives whose PDOs cannot carry profile speed and accelerations: these are written by SDO before each move, and both
-// axes of the head still begin and arrive together.
+// Drives whose PDOs cannot carry profile speed and accelerations. The driver writes these by SDO before each move, and
+// both axes of the head still begin and arrive together.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,7 +13,7 @@ namespace {
 using sim::FaultKind;
 
 const std::string kPanAxis = "head (pan axis)", kTiltAxis = "head (tilt axis)";
-constexpr std::uint32_t kAnswerOfTilt = 0x586;  ///< its SDO server's
+constexpr std::uint32_t kAnswerOfTilt = 0x586;  ///< of its SDO server
 const char* const kRemark = "node 6 cannot be told speed and acceleration by PDO";
 
 std::uint16_t object_of(const can::CanFrame& frame) {
@@ -21,7 +21,7 @@ std::uint16_t object_of(const can::CanFrame& frame) {
 }
 bool is_limit(std::uint16_t index) { return index == 0x6081 || index == 0x6083 || index == 0x6084; }
 
-/// How far the tilt is off the straight line from one posture to another, at its worst.
+/// Largest distance of the tilt from the straight line between two postures.
 double off_the_line_deg(const std::vector<Joints>& path, const Joints& from, const Joints& to) {
   double worst = 0;
   for (const Joints& at : path) {
@@ -32,7 +32,7 @@ double off_the_line_deg(const std::vector<Joints>& path, const Joints& from, con
   return worst;
 }
 
-/// At rest, and free to be ordered.
+/// Runs until the head rests and accepts an order.
 void rest_at(AxesBench& bench, const Joints& aim) {
   bench.aim = aim;
   ASSERT_TRUE(bench.arrive()) << (bench.result ? "" : bench.result.error().detail);
@@ -58,7 +58,7 @@ TEST_P(LimitsBySdo, ADriveThatRefusesTheMappingMovesInStepWithOneThatDoesNot) {
   EXPECT_LT(off_the_line_deg(bench.path, from, to), 0.2);
   const HeadMove move = head_move(120, 60, {90, 180}, {60, 120});
   EXPECT_NEAR(to_seconds(bench.moved_at - asked), move.seconds, 0.25) << "some cycles later, as fast";
-  // What went over the wire: accelerations, then the speed, then the offer; nothing by RPDO 2 and 3 to that node.
+  // On the wire: accelerations, then the speed, then the offer. Nothing goes to that node by RPDO 2 and 3.
   std::vector<std::uint16_t> told;
   bool offered = false;
   for (const can::CanFrame& frame : bench.sent) {
@@ -96,7 +96,7 @@ TEST(LimitsBySdoOfBoth, AHeadMovesAndWhatTheDrivesKnowIsNotSaidAgain) {
   for (const can::CanFrame& frame : bench.sent)
     told += (frame.id == 0x605 || frame.id == 0x606) && frame.data[0] == 0x23 && is_limit(object_of(frame)) ? 1 : 0;
   EXPECT_LE(told, 6);
-  // A new aim replaces the one under way.
+  // A new aim replaces the current one.
   bench.aim = AxesBench::deg(120, 90);
   bench.run(0.8);
   bench.aim = AxesBench::deg(-30, -20);

@@ -1,4 +1,4 @@
-// Axes that say wrong things about themselves: where the simulated joints truly go meanwhile.
+// Axes that report wrong things about themselves, and where the simulated joints truly go.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ struct UnderWay : AxesBench {
     run(1);
     EXPECT_GT(std::abs(pan().speed_deg_s()), 30);
   }
-  /// How far the joints were past their way [deg].
+  /// Largest distance of the joints beyond their path [deg].
   [[nodiscard]] double past_the_way_deg() const {
     double worst = 0;
     for (const Joints& at : path) {
@@ -43,7 +43,7 @@ struct UnderWay : AxesBench {
 };
 
 TEST(AxesThatLie, AWrongStatuswordNeverTakesTheTorqueOffAnAxisUnderWay) {
-  // Switch on disabled, ready, switched on, fault, fault reaction, not ready: from each another word leads on.
+  // Switch on disabled, ready, switched on, fault, fault reaction, not ready: each needs another control word to go on.
   for (const int word : {0x0250, 0x0231, 0x0233, 0x0208, 0x020F, 0x0200}) {
     UnderWay bench;
     bench.run(0.2);  // so near the end that its momentum would carry it beyond
@@ -77,7 +77,7 @@ TEST(AxesThatLie, APositionThatCannotBeStopsTheHeadAndIsReadAgain) {
   bench.run(1);
   EXPECT_EQ(bench.pan().speed_deg_s(), 0);
   EXPECT_EQ(bench.tilt().speed_deg_s(), 0);
-  // It says the same all the time now: only another way to its position shows that it is wrong.
+  // From now on its position never changes. Only the other way to read the position shows that it is wrong.
   const Time still = bench.now;
   bench.run(3);
   EXPECT_LT(bench.moved_at, still);
@@ -89,7 +89,7 @@ TEST(AxesThatLie, APositionThatCannotBeStopsTheHeadAndIsReadAgain) {
 
 TEST(AxesThatLie, AnEncoderThatLostItsCountIsHomedAnew) {
   UnderWay bench;
-  // Both ways agree on a position that the axis cannot have come to: it is the count that jumped.
+  // Both ways agree on a position that the axis cannot have reached: the count has jumped.
   bool searched = false;
   bench.lie = [&](can::CanFrame& frame) {
     if (bench.pan().mode_display() == 6) searched = true;
@@ -145,7 +145,7 @@ TEST(AxesThatLie, HomeIsBelievedOnlyWhenSaidThreeTimes) {
   ASSERT_TRUE(bench.run_until(10, [&] { return bench.pan().mode_display() == 6 && bench.pan().speed_deg_s() != 0; }));
   int status = 0;
   bench.lie = [&](can::CanFrame& frame) {
-    if (frame.id == kPanStatus && ++status % 3 != 0) frame.data[1] |= 0x14;  // attained, two times of three
+    if (frame.id == kPanStatus && ++status % 3 != 0) frame.data[1] |= 0x14;  // target reached, two times of three
   };
   bench.run(1);
   bench.lie = nullptr;

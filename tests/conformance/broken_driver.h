@@ -1,6 +1,5 @@
 #pragma once
-/// Drivers that are broken on purpose, so that the suite of all drivers is itself tested: each must fail the test that
-/// is there for its fault.
+/// Drivers that are broken on purpose, to test the suite of all drivers. Each must fail the test for its fault.
 
 #include <memory>
 #include <span>
@@ -10,17 +9,17 @@
 
 namespace luxrig {
 
-/// Set in the environment, it breaks every driver of the registry in that way.
+/// This environment variable breaks every driver of the registry in the named way.
 inline constexpr const char* kBreakVariable = "LUXRIG_BREAK_DRIVER";
 
 struct Breakage {
   const char* name;
-  const char* driver;        ///< of the registry, that shows it
-  const char* failing_test;  ///< of EveryDriver
+  const char* driver;        ///< driver of the registry that shows the fault
+  const char* failing_test;  ///< test of EveryDriver
 };
 [[nodiscard]] std::span<const Breakage> breakages();
 
-/// The driver with that fault; itself when there is none of that name.
+/// The driver with the named fault; unchanged if there is no fault of that name.
 [[nodiscard]] std::unique_ptr<Driver> broken(std::unique_ptr<Driver> whole, std::string_view breakage);
 
 }  // namespace luxrig

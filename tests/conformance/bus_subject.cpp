@@ -1,4 +1,4 @@
-// Every driver of the registry, with the far end that sim/wire/ has for it, by name; a driver without one fails.
+// Every driver of the registry with its far end from sim/wire/, by name. A driver without a far end fails.
 
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
@@ -25,13 +25,13 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// The driver; broken where this process is to show that the suite notices.
+/// The driver, broken if this process must show that the suite notices.
 std::unique_ptr<Driver> made(const DriverEntry& entry, const Rig& rig, const Redirect& to) {
   const char* breakage = std::getenv(kBreakVariable);
   return broken(entry.make(rig, 0, to), breakage != nullptr ? breakage : "");
 }
 
-/// The bus as a person would write it: what is required, and nothing else.
+/// The bus with the required options only.
 Bus plain_bus(const DriverEntry& entry) {
   Bus bus = bus_of(std::string(entry.name));
   for (const OptionDoc& doc : entry.options) {
@@ -40,8 +40,8 @@ Bus plain_bus(const DriverEntry& entry) {
   return bus;
 }
 
-/// A rig that fills the bus with what it can carry: DMX fixtures and a head, in two universes or in one, Modbus dimmers
-/// and meters, or the axes of a head whose lamp is elsewhere.
+/// A rig that fills the bus: DMX fixtures and a head in one or two universes, Modbus dimmers and meters, or the axes of
+/// a head whose lamp is on another bus.
 Rig rig_for(const DriverEntry& entry) {
   Rig dmx = rig_with(plain_bus(entry));
   add_dmx(dmx, "spot", 1, 5);
@@ -69,19 +69,19 @@ Rig rig_for(const DriverEntry& entry) {
   return axes;
 }
 
-/// The bus turns heads and dims nothing.
+/// True if the bus turns heads and dims nothing.
 bool only_turns(const Rig& rig) {
   return std::none_of(rig.fixtures.begin(), rig.fixtures.end(), [](const Fixture& f) { return f.bus == 0; });
 }
 
-/// Where such a bus puts a head in place of a drive: 0 is where heads wake.
+/// Joint angles that stand for a drive on such a bus. Heads wake at 0.
 Joints joints_of(double drive) { return {rad_from_deg(10 * drive), rad_from_deg(8 * drive)}; }
 
-/// How exactly the simulated axes can be: what homing turns them in a step of 1 ms (0.025°), where friction holds the
-/// servo (0.015°), half the play of the gear (0.01°).
+/// Tolerance of the simulated axes: homing turns them 0.025° in a step of 1 ms, friction stops the servo within 0.015°,
+/// and half the play of the gear is 0.01°.
 constexpr double kAxisTolerance_deg = 0.06;
 
-/// All fixtures of the bus at one drive.
+/// Writes one drive to all fixtures of the bus.
 Result<void> write_all(Driver& driver, const Rig& rig, Time now, double drive) {
   std::vector<LevelCommand> levels;
   std::vector<AimCommand> aims;
@@ -93,7 +93,7 @@ Result<void> write_all(Driver& driver, const Rig& rig, Time now, double drive) {
   return driver.mover()->move(now, aims);
 }
 
-/// Largest error that the encoding of a fixture's drive may make: half a step.
+/// Largest error of an encoded drive: half a step.
 double resolution(const Fixture& fixture) {
   if (const auto* modbus = std::get_if<ModbusPatch>(&fixture.patch)) return 0.5 / modbus->full_scale_raw;
   for (const DmxSlot& slot : std::get<DmxPatch>(fixture.patch).slots) {
@@ -104,7 +104,7 @@ double resolution(const Fixture& fixture) {
 
 class BusSubject final : public Subject {
  public:
-  // Axes watch the master by its clock, so theirs must not run ahead of it; their driver never waits.
+  // Axes watch the master by the far end's clock, so it must not run ahead of the master's. Their driver never waits.
   explicit BusSubject(const DriverEntry& entry)
       : entry_(entry),
         rig_(rig_for(entry)),
@@ -126,7 +126,7 @@ class BusSubject final : public Subject {
     now += bounds.write_period;
   }
   Duration period() const override { return bounds.write_period; }
-  /// Axes also have to find their home and to travel.
+  /// Axes also need time to find their home and to travel.
   void settle(double drive, int obeys_within) override {
     const int most = only_turns(rig_) ? 600 : obeys_within;
     for (int i = 0; i < most && !(only_turns(rig_) && last && at(drive) && i > 2); ++i) cycle(drive);
@@ -185,7 +185,7 @@ class BusSubject final : public Subject {
       const AimCommand aim{1, wanted};
       ASSERT_TRUE(mover->move(now, {&aim, 1}));
       for (int i = 0; i < 200; ++i) {
-        if (only_turns(rig_)) {  // with no more commands
+        if (only_turns(rig_)) {  // without further commands
           far_.step_to(now);
           EXPECT_TRUE(mover->move(now, {}));
           now += bounds.write_period;
@@ -226,7 +226,7 @@ class BusSubject final : public Subject {
     const auto took = std::chrono::steady_clock::now() - start;
     worst_over_bound = std::max(worst_over_bound, std::chrono::duration_cast<Duration>(took) - bound);
   }
-  /// Heads on axes: nowhere but between where the two drives put them.
+  /// True if all heads on axes are between the postures of the two drives.
   bool between(double from, double to) const {
     const double slack = rad_from_deg(kAxisTolerance_deg);
     const Joints least = joints_of(from), most = joints_of(to);
@@ -247,8 +247,7 @@ class BusSubject final : public Subject {
   Time stepped_{};
 };
 
-/// Everything a driver sends to one loopback port, by UDP or TCP, or to a serial port, whichever it speaks; nobody
-/// answers.
+/// Records everything that a driver sends to one loopback port by UDP or TCP, or to a serial port. It never answers.
 class Recorder {
  public:
   Recorder() : tcp_([](const auto&) { return ScriptedAnswer{}; }) {
@@ -314,9 +313,9 @@ std::vector<Kind> bus_kinds() {
     kind.name = entry.name;
     kind.connected = [&entry] { return std::make_unique<BusSubject>(entry); };
     kind.alone = [&entry] {
-      static std::vector<std::unique_ptr<Rig>> rigs;  // drivers may look at theirs
+      static std::vector<std::unique_ptr<Rig>> rigs;  // drivers may keep a reference
       rigs.push_back(std::make_unique<Rig>(rig_for(entry)));
-      return made(entry, *rigs.back(), Redirect{"127.0.0.1", 9, {}});  // the discard port: nobody is there
+      return made(entry, *rigs.back(), Redirect{"127.0.0.1", 9, {}});  // the discard port: no peer there
     };
     kind.record = [&entry] { return record_bus(entry); };
     kind.problems_of_misspelt_option = [&entry](std::string& known) {

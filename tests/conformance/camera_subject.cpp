@@ -1,5 +1,5 @@
-// Cameras: a video device in the same process under a stepped clock, and a folder that another program fills. What
-// is asked of them is to see the light that is there.
+// Cameras: a video device in the same process under a stepped clock, and a folder that another program fills. A camera
+// must see the light that is there.
 
 #include <gtest/gtest.h>
 
@@ -69,7 +69,7 @@ class VideoSubject final : public CameraSubject {
  public:
   VideoSubject() : rig_(rig_of_camera(PictureSource::v4l2)) {
     device_.width_px = device_.height_px = kSeen_px;
-    device_.controls.at(VideoControl::exposure).second = 321;  // somebody has set it up
+    device_.controls.at(VideoControl::exposure).second = 321;  // set by another program before
     device_.controls.at(VideoControl::gain).second = 77;
     power_on_ = device_.controls;
     rig_.cameras[0].taking.exposure_s = kExposure_s;
@@ -123,7 +123,7 @@ class VideoSubject final : public CameraSubject {
   std::optional<sim::FaultKind> fault_;
 };
 
-/// Some other program puts a picture of 16 bits into a folder whenever one is wanted.
+/// Another program puts a 16-bit picture into a folder whenever one is wanted.
 class FolderSubject final : public CameraSubject {
  public:
   FolderSubject() : rig_(rig_of_camera(PictureSource::files)) {
@@ -148,7 +148,7 @@ class FolderSubject final : public CameraSubject {
     now += kPicturesEvery;
   }
   bool left_as_agreed(double) override { return untouched(); }
-  /// The pictures are another's.
+  /// The pictures belong to another program.
   bool untouched() override {
     std::size_t files = 0;
     for (const auto& entry : fs::directory_iterator(folder_)) files += entry.path() == newest_;
@@ -197,7 +197,7 @@ void add_number(std::vector<std::vector<std::uint8_t>>& record, double value) {
   record.emplace_back(text.begin(), text.end());
 }
 
-/// Every control it sets, and what it sees.
+/// Every control that the driver sets, and the light that it sees.
 std::vector<std::vector<std::uint8_t>> record_video() {
   std::vector<std::vector<std::uint8_t>> record;
   VideoSubject subject;
@@ -215,7 +215,7 @@ std::vector<std::vector<std::uint8_t>> record_video() {
   return record;
 }
 
-/// What it says after each picture.
+/// The driver's health after each picture.
 std::vector<std::vector<std::uint8_t>> record_folder() {
   std::vector<std::vector<std::uint8_t>> record;
   FolderSubject subject;
@@ -230,7 +230,7 @@ std::vector<std::vector<std::uint8_t>> record_folder() {
   return record;
 }
 
-/// A rig file whose line 33 is that.
+/// Problems of a rig file with this text in line 33.
 std::vector<Problem> problems_of_camera_line(const std::string& source, const std::string& line) {
   std::string text =
       "[rig]\nname = \"seen\"\n[[camera]]\nname = \"cam\"\nposition_m = [1, 2, 3]\naim_m = [0, 0, 0]\n" + source;

@@ -1,5 +1,5 @@
-/// What every driver must show. The suite walks the registry and the sources of cameras: a new line there is tested
-/// without a new test here. What is asked of a driver and what it is connected to: subject.h.
+/// What every driver must show. The suite walks the registry and the sources of cameras, so a new driver is tested
+/// without a new test here. subject.h defines the questions and the peers.
 
 #include <gtest/gtest.h>
 
@@ -15,9 +15,9 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// How long a busy test machine may keep a thread from running: no driver can state a bound for that.
+/// How long a busy test machine may hold up a thread. No driver can state a bound for that.
 constexpr Duration kBusyMachine = milliseconds(250);
-/// Cycles until heads on axes, the slowest that there are, have homed and travelled.
+/// Cycles in which heads on axes, the slowest devices, have homed and travelled.
 constexpr int kMaxCycles = 600;
 
 std::size_t entries_in(const char* folder) {
@@ -35,7 +35,7 @@ const std::vector<Kind>& kinds() {
   return all;
 }
 
-/// Cycles until all is well there. A busy machine may make a driver that waits in real time give up once on the way.
+/// Runs cycles until all is well. On a busy machine, a driver that waits in real time may give up once on the way.
 bool reaches(Subject& subject, double drive) {
   subject.settle(drive);
   const auto there = [&] { return subject.at(drive) && subject.bus().life == Life::active; };
@@ -117,7 +117,7 @@ TEST_P(EveryDriver, RefusesWhatCannotBeSentAndSendsNothing) {
 TEST_P(EveryDriver, ReturnsWithinItsBoundWhateverItsPeerDoes) {
   for (const sim::FaultKind fault : {sim::FaultKind::silent, sim::FaultKind::slow, sim::FaultKind::garbled,
                                      sim::FaultKind::lost, sim::FaultKind::dead}) {
-    // A driver that waits too long does so every time; a machine that is busy for a moment does not.
+    // A driver that waits too long does so every time; a busy machine does so only for a moment.
     Duration min_over_bound = Duration::max();
     for (int attempt = 0; attempt < 3 && min_over_bound > kBusyMachine; ++attempt) {
       const auto subject = activated();
@@ -146,7 +146,7 @@ TEST_P(EveryDriver, IsFaultedInTimeWhenItsPeerGoesAndComesBackByItselfWithTheCur
   EXPECT_GT(subject->bus().errors, 0u);
   EXPECT_FALSE(subject->last);
 
-  for (int i = 0; i < 20; ++i) subject->cycle(0.95);  // never reaches anyone
+  for (int i = 0; i < 20; ++i) subject->cycle(0.95);  // must never reach a device
   subject->clear_faults();
   const Time back = subject->now;
   while (subject->bus().life != Life::active && subject->now < back + std::chrono::minutes(1)) {
@@ -221,11 +221,11 @@ TEST_P(EveryDriver, KeepsToItsRateAndSendsKeepAlives) {
   subject->settle(0, 1);
   const std::uint64_t before = subject->bus().sent;
   const Time start = subject->now;
-  const auto wall = std::chrono::steady_clock::now();  // by which the far end answers
+  const auto wall = std::chrono::steady_clock::now();  // the far end answers by this clock
   for (int step = 0; step < 1000; ++step) {
     subject->now = start + step * milliseconds(1);
     std::this_thread::sleep_until(wall + step * milliseconds(1));
-    // A far end that a busy machine holds up for longer than a timeout misses one request, and that is no failure.
+    // If a busy machine holds up the far end for longer than a timeout, one request is missed. That is no failure.
     if (!subject->call(step / 1000.0)) {
       ASSERT_NE(subject->bus().life, Life::faulted) << subject->bus().detail;
     }

@@ -1,5 +1,5 @@
-// A fixture with several emitters, from the rig file through the DMX frame to the simulated device: each emitter's
-// level arrives in its own slots, whatever its siblings do, and what is common to them is sent once.
+// A fixture with several emitters, from the rig file through the DMX frame to the simulated device. Each emitter's
+// level arrives in its own slots, whatever its siblings do. Their common values are sent once.
 #include <gtest/gtest.h>
 
 #include "core/rig/rig_file.h"
@@ -63,7 +63,7 @@ TEST(EmittersOnTheWire, EachHasItsOwnSlotsAndSharesTheRest) {
     if (i < 3) continue;
     EXPECT_NEAR(deg_from_rad(order.joints->pan_rad), -90, 0.01) << fixture.name;
   }
-  // One emitter alone changes its own slot and no other; a shutter that is not open shuts all of its housing.
+  // One emitter alone changes only its own slot. A shutter that is not open shuts all emitters of its housing.
   DmxSlots before = slots;
   const LevelCommand alone[] = {{1, 1.0}};
   ASSERT_TRUE(bay.set_levels(alone));
@@ -84,7 +84,7 @@ TEST(EmittersOnTheWire, AHeadIsAimedOnceForAllItsEmitters) {
   ASSERT_TRUE(bay.set_aims(aims));
   ASSERT_TRUE(bay.set_levels({}));
   EXPECT_EQ(bay.universes()[0].slots[5], 0x80);
-  // What a sibling were told by mistake does not reach the wire.
+  // An order sent to a sibling by mistake does not reach the wire.
   const AimCommand stray[] = {{4, {1, 1}}};
   ASSERT_TRUE(bay.set_aims(stray));
   ASSERT_TRUE(bay.set_levels({}));

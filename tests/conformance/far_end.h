@@ -1,5 +1,5 @@
 #pragma once
-/// A simulated far end of one bus, served by a thread of its own: a driver may block while it waits for an answer.
+/// A simulated far end of one bus, served by its own thread: a driver may block while it waits for an answer.
 
 #include <poll.h>
 
@@ -21,7 +21,8 @@ namespace luxrig {
 
 class FarEnd {
  public:
-  /// Meters see 100 lx from each fixture at full level. The world has no deviations: what is set is what is.
+  /// Meters see 100 lx from each fixture at full level. The world has no deviations: outputs follow their settings
+  /// exactly.
   /// runs_on: how far its clock may go on by itself after step_to(), for drivers that wait for answers.
   explicit FarEnd(const Rig& rig, Duration runs_on = std::chrono::hours(1)) : rig_(rig), runs_on_(runs_on) {
     const auto rows = static_cast<Eigen::Index>(rig.points.size() + rig.luxmeters.size());
@@ -43,12 +44,12 @@ class FarEnd {
   FarEnd& operator=(const FarEnd&) = delete;
 
   [[nodiscard]] int port() const { return redirect_.port; }
-  /// Where a driver finds it.
+  /// The address for a driver.
   [[nodiscard]] const Redirect& redirect() const { return redirect_; }
   sim::Faults& faults() { return faults_; }
 
-  /// The far end's clock: at `now`, and on from there in real time, never back. Returns once everything that had
-  /// arrived has been served.
+  /// Sets the far end's clock to `now`; from there it runs in real time, and never goes back. Returns once everything
+  /// that had arrived has been served.
   void step_to(Time now) {
     {
       const std::lock_guard lock(mutex_);
@@ -62,8 +63,9 @@ class FarEnd {
     const std::uint64_t wanted = rounds_ + 2;
     while (rounds_ < wanted) std::this_thread::yield();
   }
-  /// How many answers may have been late since it was made, as the machine held this far end up: drivers wait 180 ms
-  /// and more for one, and one takes at most three rounds. A driver that misses no more of them may be right.
+  /// Answers that may have been late because the machine held up this far end, since its start. Drivers wait 180 ms and
+  /// more for an answer, which takes at most three rounds. A driver that misses no more answers than these may be
+  /// right.
   [[nodiscard]] std::uint64_t answers_held_up() const { return answers_held_up_; }
   [[nodiscard]] std::vector<double> drives() const {
     const std::lock_guard lock(mutex_);

@@ -1,5 +1,5 @@
-// The Modbus RTU driver against simulated units on a pseudo terminal, in real time: what a line can do to an answer, an
-// adapter that is pulled out, products with register maps, a unit that is dead.
+// The Modbus RTU driver against simulated units on a pseudo terminal, in real time: answers damaged by the line, an
+// adapter that is pulled out, products with register maps, a dead unit.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -52,8 +52,8 @@ struct RealLine {
     const Time end = now() + from_seconds(seconds);
     while (now() < end) cycle(drive);
   }
-  /// Until every meter has been read so often and all levels are there, however long a busy machine takes for that; the
-  /// bound only ends a test that would hang. True when it came to that.
+  /// Runs until every meter has been read this many times and all levels have arrived, however long a busy machine
+  /// takes. The bound of 60 s only ends a test that would hang. Returns true on success.
   [[nodiscard]] bool run_until_read(std::size_t times, double drive) {
     const auto done = [&] {
       for (std::size_t meter = 0; meter < rig.luxmeters.size(); ++meter)
@@ -92,7 +92,7 @@ Rig line_rig(std::vector<std::pair<std::string, OptionValue>> options = {}) {
   return rig_with(bus_of("modbus_rtu", std::move(options)));
 }
 
-/// Two meters of one unit, far apart, and one of another: three values that must never be taken for one another.
+/// Two meters of one unit, far apart, and one of another unit: three values that must never be confused.
 Rig three_meters() {
   Rig rig = line_rig();
   add_modbus(rig, "dimmer", 9, 0);
@@ -156,7 +156,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(ModbusRtuLine, ReadsThroughNoiseAndPausesWithoutAFault) {
   for (const auto& [fault, value] : {std::pair{sim::FaultKind::noise, 5.0}, std::pair{sim::FaultKind::gap, 60.0}}) {
-    // A driver that takes such a pause for a fault does so in every attempt; a machine that held up the driver, and not
+    // A driver that takes such a pause for a fault does so in every attempt. A machine that held up the driver, but not
     // its far end, does not.
     std::uint64_t fewest_errors = 1;
     std::string detail;
@@ -209,7 +209,7 @@ TEST(ModbusRtuLine, SaysSoWhenAPortDoesNotTakeItsSettings) {
             std::string::npos)
       << bus.detail;
   rig.buses[0].options["parity"] = {std::string("none"), {}};
-  rig.buses[0].options["rs485"] = {true, {}};  // a pseudo terminal cannot: no fault
+  rig.buses[0].options["rs485"] = {true, {}};  // a pseudo terminal cannot do this: no fault
   const auto plain = find_driver("modbus_rtu")->make(rig, 0, std::nullopt);
   ASSERT_TRUE(plain->activate(at_ms(0)));
   EXPECT_EQ(plain->health(at_ms(0)).at(0).life, Life::active) << plain->health(at_ms(0)).at(0).detail;
@@ -224,7 +224,7 @@ TEST(ModbusRtuLine, GoesOnWhenTheAdapterIsPluggedInAgain) {
   EXPECT_EQ(line.health("the-bus").life, Life::faulted);
   EXPECT_NE(line.health("the-bus").detail.find("plug the adapter in"), std::string::npos);
   line.far.faults().clear();
-  // At some time of these: a busy machine may hold up the very last answer.
+  // At any of these times: a busy machine may hold up the very last answer.
   bool is_back = false, is_lit = false;
   for (const Time end = line.now() + from_seconds(2.0); line.now() < end;) {
     line.cycle(0.75);
@@ -333,7 +333,7 @@ TEST(ModbusProducts, AGapThatADeviceWantsIsKept) {
   rig.luxmeters[0].patch.map = slow;
   rig.luxmeters.push_back(rig.luxmeters[0]);
   rig.luxmeters[1].name = "other register";
-  rig.luxmeters[1].patch.first_register = 0x46;  // of the same unit: two requests one behind the other
+  rig.luxmeters[1].patch.first_register = 0x46;  // of the same unit: two requests in a row
   rig.luxmeters[1].patch.registers = 1;
   RealLine line(rig);
   ASSERT_TRUE(line.run_until_read(10, 0.5)) << line.health("the-bus").detail;
@@ -349,8 +349,8 @@ TEST(ModbusRtuLine, ADeadUnitOfEightDelaysTheOthersByOneTimeoutAtMost) {
   line.run(1.0, 0);
   line.far.faults().set("meter-4", sim::FaultKind::silent, true);
   line.run(1.0, 0);  // found out
-  // The dead unit is asked in each 6 s, so a driver that waits for it twice is late in every one of them. A machine that
-  // is held up for some tenths of a second now and then is not.
+  // The dead unit is asked every 6 s, so a driver that waits twice for it is late in each of these periods. A machine
+  // that is held up for some tenths of a second now and then is not.
   Duration longest = Duration::max();
   double max_rounds = 0;
   for (int attempt = 0; attempt < 8 && (longest >= kLatest || max_rounds < kMinRounds); ++attempt) {

@@ -1,5 +1,5 @@
 #pragma once
-/// A USB channel whose far end is a simulated widget in the same process, under a stepped clock: waiting moves the
+/// A USB channel whose far end is a simulated widget in the same process, under a stepped clock. Waiting moves the
 /// clock on, so a test sees microseconds that no real machine would keep.
 
 #include <algorithm>
@@ -11,15 +11,15 @@
 
 namespace luxrig {
 
-/// The cable and what is wrong with it; outlives the channel.
+/// The cable and its faults; outlives the channel.
 struct ModelCable {
   explicit ModelCable(sim::UsbDevice& the_device) : device(the_device) { device.power_on(now); }
   sim::UsbDevice& device;
   Time now = Time{} + std::chrono::seconds(1000);
   bool plugged_in = true;
-  int stalls = 0, hangs = 0, failures = 0;  ///< of the next transfers out
-  std::vector<UsbSetup> requests;           ///< control transfers out that were begun
-  std::vector<std::size_t> bulk_out;        ///< bytes of each
+  int stalls = 0, hangs = 0, failures = 0;  ///< number of next outgoing transfers that do so
+  std::vector<UsbSetup> requests;           ///< outgoing control transfers that were begun
+  std::vector<std::size_t> bulk_out;        ///< bytes of each transfer
   int opened = 0, closed = 0;
 };
 

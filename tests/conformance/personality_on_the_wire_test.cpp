@@ -1,5 +1,5 @@
-// A fixture with a maker's file, from the rig file through the DMX frame to the simulated fixture, which reads the
-// frame by the file's functions alone.
+// A fixture with a maker's file, from the rig file through the DMX frame to the simulated fixture. The simulated
+// fixture reads the frame only by the file's functions.
 #include <gtest/gtest.h>
 
 #include "core/rig/personality/personality.h"

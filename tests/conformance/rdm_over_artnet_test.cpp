@@ -1,5 +1,5 @@
-/// RDM end to end: client and link against the simulated node over loopback, in real time; and discovery against
-/// simulated responders, two readings of one standard.
+/// RDM end to end: client and link against the simulated node over loopback, in real time. Also discovery against
+/// simulated responders: two independent readings of one standard.
 #include <gtest/gtest.h>
 
 #include <thread>
@@ -68,7 +68,7 @@ class RdmOverArtnet : public ::testing::Test {
     return {link_.table().uids.begin(), link_.table().uids.end()};
   }
 
-  /// Puts a level on one slot, and returns what the lamp is driven to then.
+  /// Puts a level on one slot; returns the lamp's drive after it.
   double drive_by_slot(int address, std::uint8_t level) {
     artnet::Dmx dmx;
     dmx.port_address = kUniverse;

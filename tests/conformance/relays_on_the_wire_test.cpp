@@ -1,5 +1,5 @@
-/// Lamps behind relays (coils), and the bits by which a product says that one has burnt out (discrete inputs): the
-/// driver at simulated units, over TCP and on a line.
+/// Lamps behind relays (coils), and the bits by which a product reports that a lamp has burnt out (discrete inputs):
+/// the driver against simulated units, over TCP and on a serial line.
 
 #include <gtest/gtest.h>
 
@@ -118,7 +118,7 @@ TEST_P(RelaysOnTheWire, OfAProductThatKnowsOneAtATimeAreSwitchedOneByOne) {
   EXPECT_EQ(bench.driver->health(bench.now).at(0).errors, 0u);
 }
 
-// The simulated unit sets every failure bit of a lamp that has burnt out, its own and that of all.
+// The simulated unit sets every failure bit of a burnt-out lamp, its own and the common one.
 TEST_P(RelaysOnTheWire, SayThatALampHasBurntOutAndThatItIsWellAgain) {
   RelayBench bench(GetParam());
   bench.cycles(15, {1, 1, 1, 1});

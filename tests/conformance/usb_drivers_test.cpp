@@ -1,4 +1,4 @@
-/// The USB drivers against the simulated widgets under a stepped clock: what the suite of every driver cannot see.
+/// The USB drivers against the simulated widgets under a stepped clock: tests beyond the suite of every driver.
 
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ Rig usb_rig(const std::string& driver, std::vector<std::pair<std::string, Option
   return rig;
 }
 
-/// A driver at its cable. Cycles are 1/44 s; what the driver waits comes on top.
+/// A driver at its cable. A cycle is 1/44 s plus the driver's waits.
 struct Bench {
   using Make = std::unique_ptr<Driver> (*)(std::unique_ptr<UsbChannel>, const Rig&, std::size_t);
   Bench(sim::UsbDevice& device, const Rig& the_rig, Make make) : rig(the_rig), cable(device) {
@@ -48,7 +48,7 @@ struct Bench {
     const auto look = cable.device.line(cable.now);
     return look ? look->at(static_cast<std::size_t>(address - 1)) : -1;
   }
-  /// Time until the bus is in that life.
+  /// Time until the bus has that life.
   Duration until(Life life, double drive) {
     const Time start = cable.now;
     while (health().life != life && cable.now < start + std::chrono::seconds(20)) (void)cycle(drive);
@@ -137,7 +137,7 @@ TEST(EnttecProDriver, SaysThatAPlainCableIsNoWidget) {
 TEST(EnttecProDriver, LeavesTheNewestLevelsBehindThatTheWidgetThenRepeats) {
   ProBench pro;
   pro.bench.cycles(20, 0.5);
-  // Two levels within one period of the widget's rate: the second waits, and leaves with the goodbye.
+  // Two levels within one period of the widget's rate: the second waits and is sent with the goodbye.
   const LevelCommand last{0, 1.0};
   const LevelCommand other{1, 1.0};
   (void)pro.bench.driver->level_output()->write(pro.bench.cable.now, {&other, 1});
@@ -238,7 +238,7 @@ TEST(UdmxDriver, TellsEverythingOnceAndThenOnlyWhatChanges) {
 TEST(UdmxDriver, NeverSplitsA16BitValue) {
   UdmxBench u;
   u.bench.cycles(5, 0.5);
-  // The head's dimmer is at slots 105 and 106: coarse and fine of one value, whatever else changes.
+  // The head's dimmer is at slots 105 and 106: coarse and fine of one value. They stay together whatever else changes.
   for (int i = 0; i < 500; ++i) {
     const double drive = i / 499.0;
     const LevelCommand commands[] = {{8, drive}, {static_cast<std::size_t>(i % 8), drive}};
@@ -289,7 +289,7 @@ TEST(UdmxDriver, CancelsATransferThatHangs) {
 TEST(UdmxDriver, SaysThatRefusedTransfersHoldTheLightAndIsWellAgainByItself) {
   UdmxBench u;
   u.bench.cycles(5, 0.5);
-  u.bench.cable.stalls = 60;  // some 1.4 s, too few for a lost device
+  u.bench.cable.stalls = 60;  // about 1.4 s, too short for a lost device
   EXPECT_LE(u.bench.until(Life::faulted, 0.75), milliseconds(900));
   EXPECT_NE(u.bench.health().detail.find("light follows late"), std::string::npos) << u.bench.health().detail;
   EXPECT_FALSE(u.bench.cycle(0.75));
@@ -331,7 +331,7 @@ TEST(UdmxDriver, CountsRefusalsThatNobodySeesAndIsWell) {
 TEST(UdmxDriver, TellsAWidgetThatForgotEverythingWithinASecond) {
   UdmxBench u;
   u.bench.cycles(10, 0.5);
-  u.widget.power_on(u.bench.cable.now);  // a dip of its supply that USB did not see
+  u.widget.power_on(u.bench.cable.now);  // a supply dip that USB did not see
   EXPECT_EQ(u.bench.slot(1), -1);
   u.bench.cycles(44, 0.5);
   EXPECT_EQ(u.bench.slot(1), 128);

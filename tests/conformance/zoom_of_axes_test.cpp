@@ -1,5 +1,5 @@
 // A head whose pan and tilt are drives on a CAN bus, while its zoom is a slot of its lamp's DMX address: from the rig
-// file through both wires to the simulated head.
+// file over both wires to the simulated head.
 #include <gtest/gtest.h>
 #include <stdlib.h>
 
@@ -92,7 +92,7 @@ TEST(ZoomOfAxes, TheSimulatedHeadZoomsWhileItsAxesTurnIt) {
   ASSERT_TRUE(bench.arrive()) << (bench.result ? "" : bench.result.error().detail);
   EXPECT_NEAR(deg_from_rad(bench.joints().beam_rad), 50, 0.01);
   bench.run(1);
-  // The zoom alone: no axis is ordered, and nothing but the beam changes.
+  // Only the zoom: no axis gets an order, and only the beam width changes.
   const Joints before = bench.joints();
   const Time still = bench.moved_at;
   bench.aim->beam_rad = rad_from_deg(10);
@@ -105,7 +105,7 @@ TEST(ZoomOfAxes, TheSimulatedHeadZoomsWhileItsAxesTurnIt) {
   EXPECT_TRUE(bench.result);
 }
 
-/// The same lamp by its maker's file: 8 to 60 degrees, of which the luminaire goes through 10 to 50; wide at 0.
+/// The same lamp by its maker's file: zoom from 8 to 60 degrees, wide at 0. The luminaire uses 10 to 50 degrees.
 struct MadeLamp {
   MadeLamp() {
     std::string name = (std::filesystem::temp_directory_path() / "luxrig-lamp-XXXXXX").string();

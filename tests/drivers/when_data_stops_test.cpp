@@ -1,4 +1,4 @@
-/// Each driver's statement of what its outputs do when data stops.
+/// Each driver's statement of its outputs' behaviour when data stops.
 #include "drivers/when_data_stops.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-/// Misuses that must not compile. tests/misuse/check compiles this file with MISUSE = 0, which must do, and then once
-/// for each number, which must not. The comment behind a number is what the compiler must say.
+/// Misuses that must not compile. tests/misuse/check compiles this file with MISUSE = 0, which must succeed, and then
+/// once for each number, which must fail. The comment behind a number is the expected compiler message.
 
 #include "core/rig/rig_file.h"
 #include "core/scene/ray_scene.h"

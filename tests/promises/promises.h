@@ -73,7 +73,7 @@ struct Kept {
 
 class Model {
  public:
-  /// The first broken promise, in words; empty if none is.
+  /// The first broken promise, in words; empty if none is broken.
   std::string run(Subject& subject, const std::vector<Step>& steps) {
     for (std::size_t i = 0; i < steps.size(); ++i) {
       const std::string why = take(subject, steps[i]);

@@ -17,7 +17,7 @@ namespace {
 
 constexpr Duration kTick = std::chrono::milliseconds(20);
 constexpr std::size_t kPlans = 3;
-constexpr std::size_t kOverWorks[] = {0, 3, 5, 10};  ///< lamps whose light decides about the limits
+constexpr std::size_t kOverWorks[] = {0, 3, 5, 10};  ///< lamps whose light decides on the limits
 constexpr std::size_t kFrozen = 2;                   ///< index of the fault
 constexpr double kLargestStep = 0.0376;  ///< as in tests/scenarios/closed_loop.h
 
@@ -102,8 +102,7 @@ class SteppedSubject final : public Subject {
     };
     const One faults[] = {{"meter-1", FaultKind::silent, {}},
                           {"meter-2", FaultKind::lost, 0.5},
-                          // A lower value than a weak lamp could explain; a plausible one could not be told from a weak
-                          // lamp.
+                          // A lower value than a weak lamp could explain: a plausible one would look like a weak lamp.
                           {"meter-3", FaultKind::stuck, {}},
                           {"meter-4", FaultKind::lying, 0.3},
                           {"spot-9", FaultKind::silent, {}},

@@ -1,4 +1,4 @@
-// What a person sets by hand in a whole simulated hall: it stays, the rest is corrected round it, and no limit breaks.
+// Levels that a person sets by hand in a whole simulated hall: they stay, the rest is corrected, and no limit breaks.
 #include <gtest/gtest.h>
 
 #include "tests/scenarios/closed_loop.h"
@@ -72,7 +72,7 @@ TEST(ByHandInTheHall, AGoalSetByHandIsCorrectedToAndTheReleaseGoesBack) {
   }
 }
 
-// A rig file read again: the light goes on, limits hold, and goals are the new ones.
+// A rig file read again: the light goes on, limits hold, and the new goals apply.
 TEST(ByHandInTheHall, AnExchangedRigFadesToItsNewGoalsWithinItsNewLimits) {
   for (const bool same_light : {true, false}) {
     ClosedLoop loop(make_hall(3), seeded(3));

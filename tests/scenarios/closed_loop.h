@@ -1,6 +1,6 @@
 #pragma once
-/// The show against the simulated hall under a stepped clock: 10 ms ticks of truth, output and readings every tick that
-/// they are due, the show stepped at 50 Hz. Records what no run may ever do.
+/// The show against the simulated hall under a stepped clock: 10 ms ticks of truth, output and readings at every tick
+/// where they are due, the show stepped at 50 Hz. Records everything that must never happen.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -16,8 +16,8 @@
 
 namespace luxrig::scenarios {
 
-/// More than any fade here changes a level in the 20 ms between two outputs: the fastest, an s-curve over 0.8 s, has a
-/// greatest slope of 1.5 · 0.02 / 0.8.
+/// Larger than any level change of a fade between two outputs 20 ms apart. The fastest fade, an s-curve over 0.8 s, has
+/// a largest step of 1.5 · 0.02 / 0.8.
 inline constexpr double kLargestStep = 0.0376;
 
 inline sim::Deviations seeded(std::uint64_t seed) {
@@ -28,7 +28,7 @@ inline sim::Deviations seeded(std::uint64_t seed) {
 
 inline double random_share(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
 
-/// Any levels of twelve lamps, all bright or all dim.
+/// Random levels of twelve lamps, all bright or all dim.
 inline std::vector<double> random_levels(std::mt19937_64& random) {
   std::vector<double> levels(12);
   const double most = random_share(random);
@@ -47,16 +47,16 @@ class ClosedLoop {
   sim::InProcessRig devices;
   ShowController show;
   Time now{};
-  std::function<void(LuxReading&)> corrupt;  ///< what a wire does to readings
-  double largest_step = 0;                   ///< in level, from one output to the next, without blackouts
-  std::string log;                           ///< what left the controller, bit for bit, when wanted
+  std::function<void(LuxReading&)> corrupt;  ///< a fault on the wire of the readings
+  double largest_step = 0;                   ///< largest level change between two outputs, without blackouts
+  std::string log;                           ///< all output of the controller, bit for bit, if wanted
   bool keep_log = false;
 
   [[nodiscard]] double seconds() const { return to_seconds(now - Time{}); }
   [[nodiscard]] ShowStatus status() const { return show.status(now); }
   [[nodiscard]] Phase phase() const { return status().phase; }
   void apply() { show.apply(now, hall.plan); }
-  /// Corrections are solved beside the loop, and that takes so long.
+  /// Corrections are solved beside the loop, and each takes this long.
   void solve_late(double takes_s) {
     show.solve_beside([this, takes_s](std::function<void()> solve) {
       being_solved_.emplace_back(now + from_seconds(takes_s), std::move(solve));
@@ -70,7 +70,7 @@ class ClosedLoop {
     run_until([] { return false; }, run_s);
   }
 
-  /// Until it is so, or for so long; returns whether it is so.
+  /// Runs until so() is true, at most for this time; returns so().
   bool run_until(const std::function<bool()>& so, double at_most_s) {
     const Time end = now + from_seconds(at_most_s);
     while (now < end) {
@@ -83,7 +83,7 @@ class ClosedLoop {
     return run_until([&] { return show.status(now).phase == phase_wanted; }, at_most_s);
   }
 
-  /// Largest true lux over limit at any tick so far; at most 1 when every limit was kept.
+  /// Largest true lux over limit at any tick so far; at most 1 if every limit was kept.
   [[nodiscard]] double worst_limit_share() const {
     double worst = 0;
     const std::vector<sim::PointTruth> points = devices_world().points();
@@ -105,7 +105,7 @@ class ClosedLoop {
     return worst;
   }
 
-  /// The same in the truth, at the last tick.
+  /// The same with true lux, at the last tick.
   [[nodiscard]] double worst_true_error() const {
     double worst = 0;
     const std::vector<sim::PointTruth> points = devices_world().points();
@@ -115,7 +115,7 @@ class ClosedLoop {
     return worst;
   }
 
-  /// What goes out now.
+  /// The present output.
   [[nodiscard]] std::vector<double> levels() const {
     std::vector<double> level(hall.rig.fixtures.size());
     show.program().levels_at(now, level);

@@ -23,7 +23,7 @@ TEST(Show, BringsEveryMeteredGoalWithinThreePercentAndNeverExceedsALimitForFifty
     max_rounds = std::max(max_rounds, status.round);
     loop.run(5);
     EXPECT_LE(loop.worst_measured_error(), 0.03) << "seed " << seed << " " << loop.describe();
-    // The truth can be further off by what the meter itself may be wrong.
+    // The true error can be larger by the meter's own error.
     EXPECT_LE(loop.worst_true_error(), 0.03 + 0.04) << "seed " << seed << " " << loop.describe();
     EXPECT_LE(loop.worst_limit_share(), 1) << "seed " << seed << " " << loop.describe();
     EXPECT_TRUE(loop.devices.world().violations().empty()) << "seed " << seed;
@@ -45,11 +45,12 @@ TEST(Show, GoesAsNearToAGoalAtItsLimitAsTheMetersToleranceLetsItAndSaysSo) {
     EXPECT_TRUE(status.converged) << "seed " << seed << " " << loop.describe();
     EXPECT_LE(loop.worst_limit_share(), 1) << "seed " << seed << " " << loop.describe();
     for (std::size_t work = 0; work < kWorks; ++work) {
-      // 50 lx are aimed at, 48 are reached, and the meter may be 4 % wrong: 10 % allow that, 5 % would not.
+      // The aim is 50 lx, 48 lx are reached, and the meter may be 4 % wrong. 10 % allow that, 5 % would not.
       EXPECT_NE(status.points[work].verdict, Verdict::missed) << status.points[work].reason;
       EXPECT_NE(status.points[work].why.find("limit"), std::string::npos) << status.points[work].why;
-      // 50 lx with a meter that may be 4 % wrong: 48 lx shown is the most. Of that, 2 % (control.tolerance) are not
-      // worth another round, and up to 3 % stay free for noise and for what the next levels may do to a dimmer's gain.
+      // With a limit of 50 lx and a meter that may be 4 % wrong, it may show at most 48 lx. A shortfall of 2 %
+      // (control.tolerance) is not worth another round, and up to 3 % stay free for noise and for a dimmer's gain at
+      // the next levels.
       EXPECT_GE(*status.points[work].measured_lx, 0.95 * 48) << "seed " << seed << " " << loop.describe();
       EXPECT_LE(*status.points[work].measured_lx, 1.01 * 48) << "seed " << seed << " " << loop.describe();
     }

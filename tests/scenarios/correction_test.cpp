@@ -11,14 +11,14 @@ TEST(Show, FollowsALampThatAgesByAnotherCorrection) {
   loop.apply();
   ASSERT_TRUE(loop.run_until(Phase::holding, 30));
   const int rounds = loop.status().round;
-  // Every meter slowly shows less, as if all lamps lost 6 % in ten minutes: years of ageing, faster than in life.
+  // Every meter slowly shows less, as if all lamps lost 6 % in ten minutes: years of ageing, faster than in reality.
   const double begin_s = loop.seconds();
   loop.corrupt = [&](LuxReading& reading) {
     reading.lux *= 1 - 0.06 * std::min(1.0, (loop.seconds() - begin_s) / 600);
   };
   loop.run(660);
   EXPECT_GT(loop.status().round, rounds);
-  // 6 % are three tolerances; each of the six meters may cross each of them at a time of its own.
+  // 6 % are three tolerances, and each of the six meters may cross each tolerance at a different time.
   EXPECT_LE(loop.status().round, rounds + 3 * 6) << loop.describe();
   EXPECT_TRUE(loop.run_until(Phase::holding, 10)) << loop.describe();
   EXPECT_LE(loop.worst_measured_error(), 0.03) << loop.describe();

@@ -1,5 +1,5 @@
-// Meters and lamps that answer late, now and then, or wrongly: nothing moves for one late answer, nobody honest is
-// accused, and what can be a lie of all is said.
+// Meters and lamps that answer late, sometimes, or wrongly. Nothing moves for one late answer, no correct device is
+// accused, and a possible common error of all meters is reported.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace {
 
 using namespace doubt_fixture;
 
-/// A rig that says: whatever fails, all light goes to the safe look.
+/// A rig with the rule: on any failure, all light goes to the safe look.
 Hall all_to_safe(std::uint64_t seed) {
   Hall hall = make_hall(seed);
   hall.rig.safe.scope = SafeScope::all;
@@ -21,7 +21,7 @@ Hall all_to_safe(std::uint64_t seed) {
 }
 
 TEST(ALateAnswer, ChangesNoLight) {
-  // Drivers report half a second of silence at once; buses, a connection that was closed.
+  // Drivers report half a second of silence at once; buses report a closed connection at once.
   struct Late {
     const char* device;
     sim::FaultKind kind;
@@ -157,7 +157,7 @@ TEST_P(ABypassOfADimmer, EndsTheSafeLookAndTheRestIsSolvedWithoutIt) {
   EXPECT_NEAR(loop.levels()[0], other_before, 0.3 * other_before) << "the others have their light again";
   ASSERT_NE(notice_of(loop.status().alarms, "spot-10"), nullptr) << loop.describe();
   EXPECT_EQ(loop.status().alarms.size(), 1u) << "no meter is accused for it " << loop.describe();
-  // A new plan does not light it either, and what it was to have is not forgotten.
+  // A new plan does not light it either, and its planned level is not forgotten.
   loop.apply();
   loop.run(25);
   EXPECT_EQ(loop.levels()[9], 0);

@@ -14,7 +14,7 @@ bool only_alarm_is_of(const ClosedLoop& loop, const std::string& device) {
   return alarms.size() == 1 && alarms[0].device == device;
 }
 
-/// Works have meters, which watch over their limits.
+/// Works have meters, which watch their limits.
 TEST(FailureDomain, ADeadBusOfDimmersTakesItsLampsToTheSafeLookAndTheOthersStay) {
   ClosedLoop loop(make_hall(31), seeded(31));
   loop.apply();
@@ -77,7 +77,7 @@ TEST(FailureDomain, TheRestFadesOnToAPlanWhileABusIsDead) {
 TEST(FailureDomain, ALampThatMayHaveGoneToFullCountsSoWhereNoMeterWatchesALimit) {
   Hall hall = make_hall(34);
   const Eigen::VectorXd plan = Eigen::Map<const Eigen::VectorXd>(hall.plan.data(), 12);
-  // A place without a meter to which the dimmers' lamps give much at full, but not all that it has by the plan.
+  // A place without a meter. The dimmers' lamps give it much light at full, but not all of its planned light.
   Eigen::Index place = -1;
   for (Eigen::Index p = 6; p < 36 && place < 0; ++p) {
     const Eigen::RowVectorXd row = hall.model.point_lux_per_level.row(p);
@@ -117,7 +117,7 @@ TEST(FailureDomain, ALostMeterConcernsOnlyWhatRestsOnIt) {
   loop.run(20);
   EXPECT_EQ(loop.phase(), Phase::holding) << loop.describe();
   EXPECT_TRUE(only_alarm_is_of(loop, "meter-2")) << loop.describe();
-  // The others are read and corrected on.
+  // The other meters are still read, and their points corrected.
   std::vector<double> brighter = loop.hall.plan;
   for (double& level : brighter) level *= 0.8;
   loop.show.apply(loop.now, brighter);
@@ -138,7 +138,7 @@ TEST(FailureDomain, WhateverIsAskedAndWhateverFailsNoLimitIsExceededWhileTheRest
     while (loop.seconds() < 60) {
       const std::vector<double> wanted = random_levels(random);
       const char* device = devices[random() % std::size(devices)];
-      // A line that goes one way and falls silent is seen by nobody.
+      // A silent device on a one-way line is not noticed.
       const bool unseen = std::string(device) == "track";
       const sim::FaultKind kind = unseen || random() % 2 ? sim::FaultKind::dead : sim::FaultKind::silent;
       switch (random() % 6) {

@@ -1,4 +1,4 @@
-// Each fault, and what must hold: no limit exceeded, no jump, said within two seconds, back by itself.
+// Each fault, and what must hold: no limit exceeded, no jump, an alarm within two seconds, recovery without help.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -55,7 +55,7 @@ INSTANTIATE_TEST_SUITE_P(Each, FaultOfAMeter, testing::ValuesIn(faults_where([](
                          })),
                          name_of_case);
 
-/// A rig that says: whatever fails, all light goes to the safe look.
+/// A rig with the rule: on any failure, all light goes to the safe look.
 Hall all_safe(Hall hall) {
   hall.rig.safe.scope = SafeScope::all;
   hall.rig.safe.on_meter_loss = true;
@@ -85,7 +85,7 @@ TEST_P(Fault, NeverChangesTheLightBySurpriseAndIsMended) {
     ASSERT_TRUE(loop.run_until(Phase::measuring, 5));
   }
   EXPECT_TRUE(loop.run_until([&] { return alarmed(loop, fault.device); }, 2.0)) << loop.describe();
-  // Said at once; one late answer moves nothing, so the show waits a little before it acts on it.
+  // The alarm comes at once. One late answer moves nothing, so the show waits a little before it acts.
   EXPECT_TRUE(loop.run_until(Phase::frozen, 1.3)) << loop.describe();
   const std::vector<double> frozen = loop.levels();
   EXPECT_TRUE(fault.needs_change || frozen == held) << "not held to the last bit";
@@ -192,7 +192,7 @@ TEST(ACoveredMeter, IsNotTakenAtItsWordUntilAPersonAppliesThePlanAgain) {
   loop.apply();
   ASSERT_TRUE(loop.run_until(Phase::holding, 30));
   loop.run(3);
-  loop.fault("meter-6", sim::FaultKind::lying, true, 0.7);  // within what the model allows, but not what it was
+  loop.fault("meter-6", sim::FaultKind::lying, true, 0.7);  // allowed by the model, but not by earlier readings
   ASSERT_TRUE(loop.run_until(Phase::safe, 20)) << loop.describe();
   loop.run(60);
   EXPECT_EQ(loop.phase(), Phase::safe) << loop.describe();
@@ -210,7 +210,7 @@ TEST(WhatMustAlwaysHold5, AMeterThatLiesFromTheFirstReadingCannotDriveTheLightUp
       loop.fault(meter, sim::FaultKind::lying, true, factor);
       loop.apply();
       loop.run(40);
-      // Correction can make good what lamps (gain_min) and model (open_loop_margin) may lack together, not more.
+      // Correction can compensate the combined error of lamps (gain_min) and model (open_loop_margin), but no more.
       const double most = 1 / (loop.hall.rig.control.gain_min * (1 - loop.hall.rig.limits.open_loop_margin));
       const Eigen::VectorXd level = Eigen::Map<const Eigen::VectorXd>(loop.levels().data(), 12);
       const Eigen::VectorXd lux = loop.hall.model.point_lux_per_level * level;
@@ -273,7 +273,7 @@ TEST(WhatMustAlwaysHold2, ADeviceThatComesAndGoesNeverMakesTheLightPump) {
 }
 
 // "No output, at any instant of a fade, exceeds a fixture's limits, a conservation limit in the model, or a measured
-// conservation limit" (1): a minute of everything a person or an accident may do, at random.
+// conservation limit" (1): one minute of random commands and accidents.
 TEST(WhatMustAlwaysHold1, NoInstantOfAnyFadeExceedsALimitWhateverIsAskedAndWhateverFails) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     Hall hall = make_hall(seed);
@@ -321,7 +321,7 @@ TEST(WhatMustAlwaysHold1, NoInstantOfAnyFadeExceedsALimitWhateverIsAskedAndWhate
 }
 
 TEST(Blackout, InEveryPhaseIsDarkAtTheNextOutputAndLiftingItFadesBack) {
-  // Seconds into the show: fade, settling, measuring, correcting, holding; and with a fault: frozen, safe fade, safe.
+  // Seconds into the show: fade, settling, measuring, correcting, holding. With a fault: frozen, safe fade, safe.
   struct Moment {
     double at_s;
     bool fault;

@@ -1,6 +1,6 @@
 #pragma once
-/// A hall made of numbers: 12 fixtures, 36 points, 6 luxmeters, 4 works with a conservation limit. The transport is
-/// given, not traced, so that a show of a minute takes milliseconds; the real chain is tested with real rigs.
+/// A synthetic hall: 12 fixtures, 36 points, 6 luxmeters, 4 works with a conservation limit. The transport is given,
+/// not traced, so a show of a minute takes milliseconds. Tests with real rigs cover the real chain.
 
 #include <Eigen/Core>
 #include <cmath>
@@ -16,24 +16,24 @@ namespace luxrig::scenarios {
 struct Hall {
   Rig rig;
   LightModel model;
-  Eigen::MatrixXd truth;     ///< points, then luxmeters × fixtures: the model, wrong by a few percent
-  std::vector<double> plan;  ///< levels that bring the goals in the model
+  Eigen::MatrixXd truth;     ///< (points, then luxmeters) × fixtures: the model with errors of a few percent
+  std::vector<double> plan;  ///< levels that reach the goals in the model
 };
 
 inline constexpr std::size_t kWorks = 4;  ///< points 0…3, each with a luxmeter, max_lx 50
 
 struct HallOptions {
   double work_goal_lx = 45;
-  double model_error = 0.03;  ///< standard deviation of what is wrong in each entry of T
+  double model_error = 0.03;  ///< standard deviation of the error in each entry of T
 };
 
-/// Fixtures hang in 4 × 3 over a floor of 12 m × 9 m; each lights about what is below it, and the room a little.
+/// Fixtures hang in 4 × 3 over a floor of 12 m × 9 m. Each lights mainly the area below it, and the room a little.
 inline Hall make_hall(std::uint64_t seed, const HallOptions& options = {}) {
   std::mt19937_64 random(seed);
   const auto unit = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
   const auto normal = [&] {
     double sum = -6;
-    for (int i = 0; i < 12; ++i) sum += unit();  // close enough, bounded, and the same on every machine
+    for (int i = 0; i < 12; ++i) sum += unit();  // close to Gaussian, bounded, and the same on every machine
     return sum;
   };
   Hall hall;
@@ -57,7 +57,7 @@ inline Hall make_hall(std::uint64_t seed, const HallOptions& options = {}) {
     Point point;
     point.name = p < kWorks ? "work-" + std::to_string(p + 1) : "place-" + std::to_string(p + 1 - kWorks);
     point.position_world_m = Vec3(12 * unit(), 9 * unit(), 0.8);
-    // The works hang below one fixture each, far from one another; two more meters stand below others.
+    // Each work hangs below its own fixture, far from the others; two more meters stand below other fixtures.
     const std::size_t below[] = {0, 3, 5, 10, 8, 7};
     if (p < 6) {
       point.position_world_m =
@@ -90,7 +90,7 @@ inline Hall make_hall(std::uint64_t seed, const HallOptions& options = {}) {
       lux(p, j) = 1200 / away.squaredNorm() * std::exp(-3 * off_axis * off_axis) + 4;
     }
   }
-  // Levels somebody could have wanted; where a work hangs, so much as gives it its goal.
+  // Plausible levels. Where a work hangs, the level gives its goal.
   Eigen::VectorXd level(fixtures);
   for (Eigen::Index j = 0; j < fixtures; ++j) level[j] = 0.25 + 0.45 * unit();
   const Eigen::Index over_work[] = {0, 3, 5, 10};

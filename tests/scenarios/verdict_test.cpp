@@ -1,4 +1,4 @@
-// What the show says of goals and limits, against the truth of the simulated hall.
+// The show's verdicts on goals and limits, against the truth of the simulated hall.
 #include <gtest/gtest.h>
 
 #include "tests/scenarios/closed_loop.h"
@@ -11,7 +11,7 @@ TEST(ShowVerdicts, AreTrueForPointsWithAndWithoutAMeter) {
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
     Hall hall = make_hall(seed);
     hall.rig.control.goal_tolerance = seed % 2 == 0 ? 0.1 : 0.15;
-    // A goal that nothing reaches, and one that too much light reaches anyway.
+    // A goal that cannot be reached, with a small weight.
     hall.rig.points[20].goal_lx = 20 * *hall.rig.points[20].goal_lx;
     hall.rig.points[20].weight = 0.01;
     ClosedLoop loop(hall, seeded(seed));
@@ -95,7 +95,7 @@ TEST(ShowVerdicts, AReadingOverTheLimitThatIsNotBelievedLeavesTheLimitUnknown) {
 TEST(ShowVerdicts, ALampThatDoesNotAnswerLeavesTheLimitsThatItCouldBreakUnknown) {
   Hall hall = make_hall(4);
   const std::size_t dead = 9;
-  std::size_t near = 6;  // of the points without a meter, the one that this lamp lights most
+  std::size_t near = 6;  // the point without a meter that this lamp lights most
   for (std::size_t p = 6; p < hall.rig.points.size(); ++p)
     if (hall.model.point_lux_per_level(static_cast<Eigen::Index>(p), dead) >
         hall.model.point_lux_per_level(static_cast<Eigen::Index>(near), dead))
@@ -121,7 +121,7 @@ TEST(ShowVerdicts, ADimmerThatDiesHoldingShowsTheLevelItHolds) {
   const double held = loop.status().fixtures[9].level;
   ASSERT_GT(held, 0.15);
   loop.fault("spot-10", sim::FaultKind::silent, true);
-  loop.run(15);  // by then the safe look is out
+  loop.run(15);  // by then the safe look is reached
   const FixtureStatus dead = loop.status().fixtures[9];
   EXPECT_NEAR(dead.level, held, 0.005);
   EXPECT_FALSE(dead.level_known);

@@ -1,4 +1,4 @@
-/// A lighting desk -> Luxrig's input -> what both want, within limits -> the simulated rig, over loopback under a
+/// A lighting desk -> Luxrig's input -> the merged levels, within limits -> the simulated rig, over loopback under a
 /// stepped clock.
 #include <gtest/gtest.h>
 
@@ -40,7 +40,7 @@ struct FollowedRig {
     made.control.fade_s = 2;
     return made;
   }
-  /// A cycle of the output; the desk sends first when it is on.
+  /// A cycle of the output; the desk sends first if it is on.
   void cycle() {
     if (desk_dmx) {
       ++sequence_;
@@ -110,10 +110,10 @@ TEST_P(FollowedDesk, IsTakenOverFromWithoutAFlashWhenItIsLostAndGetsTheLightBack
   rig.max_jump = 0;
   rig.desk_dmx.reset();
   rig.run(2);
-  EXPECT_NEAR(rig.far.drives()[1], 0.8, 0.003);  // it may be back at any moment
+  EXPECT_NEAR(rig.far.drives()[1], 0.8, 0.003);  // it may come back at any moment
   rig.run(12);
   EXPECT_NEAR(rig.far.drives()[1], 0.2, 0.003);
-  EXPECT_LE(rig.max_jump, 1.5 * 0.6 * 0.0228 / 2 + 2.0 / 255);  // an s-curve's steepest, and a step of 8 bits
+  EXPECT_LE(rig.max_jump, 1.5 * 0.6 * 0.0228 / 2 + 2.0 / 255);  // an s-curve's steepest slope, and an 8-bit step
   rig.desk_dmx = 204;
   rig.run(5);
   EXPECT_NEAR(rig.far.drives()[1], 0.8, 0.003);
@@ -125,7 +125,7 @@ TEST_P(FollowedDesk, IsStoodByForInSilence) {
   rig.desk_dmx = 204;
   rig.run(3);
   const std::uint64_t polls_only = rig.driver->health(rig.now)[0].sent;
-  EXPECT_LE(polls_only, 6u);  // sACN nothing, Art-Net polls and an answer
+  EXPECT_LE(polls_only, 6u);  // no sACN, Art-Net polls and one answer
   EXPECT_EQ(rig.far.drives()[1], 0);
   rig.desk_dmx.reset();
   rig.run(std::string(GetParam()) == "sacn" ? 2.7 : 10.2);

@@ -1,5 +1,5 @@
-// A whole show on one RS-485 line: four outputs of an analogue module and a luxmeter, both by their register maps, over
-// a real serial driver. The lamps give less than the model says, so the light is right only if the loop closes.
+// A whole show on one RS-485 line: four outputs of an analogue module and a luxmeter, both by their register maps, with
+// a real serial driver. The lamps give less than in the model, so the light is right only if the loop closes.
 #include <gtest/gtest.h>
 
 #include <algorithm>

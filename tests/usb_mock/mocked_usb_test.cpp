@@ -1,5 +1,5 @@
-/// The USB drivers through the real libusb, with usbfs pretended by umockdev: found, claimed, frames whole and in
-/// order, stall, hang, unplugged, plugged in again, the kernel's driver put aside and given back. In real time.
+/// The USB drivers through the real libusb on a usbfs simulated by umockdev: found, claimed, frames whole and in order,
+/// stall, hang, unplugged, plugged in again, the kernel's driver detached and attached again. In real time.
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 #include "tests/usb_mock/usbfs_mock.h"
 
 #ifdef __SANITIZE_ADDRESS__
-// umockdev's library is loaded before the sanitizer's own, which would refuse to start.
+// umockdev's library is loaded before the sanitizer's own, which would then refuse to start.
 extern "C" const char* __asan_default_options() { return "verify_asan_link_order=0"; }
 #endif
 
@@ -39,7 +39,7 @@ struct Desk {
     (void)driver->level_output()->write(now(), commands);
     longest = std::max<Duration>(longest, steady_clock::now() - start);
   }
-  /// Cycles of 23 ms until that is so; false after five seconds.
+  /// Runs cycles of 23 ms until the condition holds; false after five seconds.
   template <class Condition>
   bool run_until(double drive, Condition condition) {
     for (const auto end = steady_clock::now() + std::chrono::seconds(5); steady_clock::now() < end;) {
@@ -65,7 +65,7 @@ struct Desk {
   Duration longest{};
 };
 
-/// Life of a driver at a widget: the same for all three.
+/// A driver's life at a widget: the same for all three drivers.
 void plug_and_replug(Desk& desk) {
   desk.activate();
   EXPECT_EQ(desk.health().life, Life::faulted);
@@ -83,7 +83,7 @@ void plug_and_replug(Desk& desk) {
   desk.driver->deactivate(Desk::now());
   desk.mock.with([](const UsbfsMock::State& state) {
     EXPECT_EQ(state.claims, 2);
-    EXPECT_GE(state.releases, 1);  // the one that was unplugged has nothing to release
+    EXPECT_GE(state.releases, 1);  // the unplugged one has nothing to release
   });
 }
 
@@ -164,7 +164,7 @@ TEST(MockedUsb, OpenDmxPacketsAreWholeBehindTheirBreaks) {
   });
 }
 
-/// Of transfers. On a busy machine one that nobody held up may come too late, too.
+/// Number of cancelled transfers. On a busy machine a transfer may also be late by itself.
 std::uint64_t cancelled(Desk& desk) {
   std::uint64_t count = 0;
   desk.mock.with([&](const UsbfsMock::State& state) { count = static_cast<std::uint64_t>(state.discarded); });

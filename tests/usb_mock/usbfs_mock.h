@@ -1,6 +1,6 @@
 #pragma once
-/// A simulated widget below the real libusb: umockdev stands in for sysfs, udev and the ioctls of usbfs, and hands the
-/// transfers to a model of sim/devices/usb/. Runs under umockdev-wrapper. The model's clock is the real one.
+/// A simulated widget below the real libusb. umockdev replaces sysfs, udev and the ioctls of usbfs, and passes the
+/// transfers to a model from sim/devices/usb/. Runs under umockdev-wrapper. The model's clock is the real one.
 
 #include <cerrno>
 #include <chrono>
@@ -10,7 +10,7 @@
 #include <mutex>
 #include <string>
 
-// Before usbdevice_fs.h, which takes its macros from there.
+// Before usbdevice_fs.h, which uses macros from it.
 #include <sys/ioctl.h>
 // clang-format off
 #include <linux/usbdevice_fs.h>
@@ -72,13 +72,13 @@ class UsbfsMock {
     plugged_in_ = false;
   }
 
-  // What is wrong, and what is seen; under the mutex, as ioctls come in another thread.
+  // Faults and observations. Guarded by the mutex, as ioctls come in another thread.
   struct State {
-    int stalls = 0, hangs = 0;   ///< of the next vendor requests out or bulk transfers out
+    int stalls = 0, hangs = 0;   ///< number of next outgoing vendor requests or bulk transfers
     bool kernel_driver = false;  ///< ftdi_sio holds the interface
-    bool other_program = false;  ///< so does somebody else through usbfs
+    bool other_program = false;  ///< another program holds it through usbfs
     int detached = 0, attached = 0, claims = 0, releases = 0, discarded = 0;
-    std::vector<sim::UsbControl> requests;  ///< vendor requests out
+    std::vector<sim::UsbControl> requests;  ///< outgoing vendor requests
   };
   template <class Call>
   auto with(Call call) {
@@ -96,7 +96,7 @@ class UsbfsMock {
 
   struct Urb {
     UMockdevIoctlData* data = nullptr;    ///< usbdevfs_urb
-    UMockdevIoctlData* buffer = nullptr;  ///< what it points to
+    UMockdevIoctlData* buffer = nullptr;  ///< its target
     bool begun = false, hangs = false;
     Time due{};
     int status = 0;
@@ -120,7 +120,7 @@ class UsbfsMock {
       return TRUE;
     };
     const unsigned long request = umockdev_ioctl_client_get_request(client);
-    // A device that has been unplugged still hands its transfers back.
+    // An unplugged device still returns its transfers.
     if (gone_ && request != USBDEVFS_REAPURB && request != USBDEVFS_REAPURBNDELAY) return answer(-1, ENODEV);
     switch (request) {
       case USBDEVFS_GET_CAPABILITIES: {

@@ -16,7 +16,7 @@ export async function startBrowser() {
   });
 }
 
-/** Opens the page and notes everything it should not do: errors, and requests to anywhere but its own server. */
+/** Opens the page and records its faults: errors, and requests to any server but its own. */
 export async function openPage(browser, url, options = {}) {
   const context = await browser.newContext({ viewport: { width: 1440, height: 900 }, colorScheme: 'dark', ...options });
   const page = await context.newPage();
@@ -39,7 +39,7 @@ export async function openPage(browser, url, options = {}) {
   return { page, misdeeds, close: () => context.close() };
 }
 
-/** Waits until `probe` (an async function) answers true; says what it answered last if it never does. */
+/** Waits until `probe` (an async function) answers true; if it never does, reports its last answer. */
 export async function eventually(what, probe, within_ms = 4000) {
   const end = Date.now() + within_ms;
   let last;

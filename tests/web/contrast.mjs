@@ -1,6 +1,6 @@
 // Contrast of every visible text on the page (WCAG 2.2, success criterion 1.4.3: 4.5 : 1).
 
-/** Texts whose contrast with their nearest opaque ground is less than 4.5 : 1, each once, with the figure. */
+/** Texts whose contrast with their nearest opaque background is less than 4.5 : 1, each once, with the ratio. */
 export function unreadableTexts(page) {
   return page.evaluate(() => {
     const parse = (css) => {
@@ -22,7 +22,7 @@ export function unreadableTexts(page) {
     const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
     while (walker.nextNode()) {
       const element = walker.currentNode.parentElement;
-      // Text over the picture has a halo of the ground's colour instead.
+      // Text over the picture has a halo of the background's colour instead.
       if (!walker.currentNode.data.trim() || !element.checkVisibility({ checkVisibilityCSS: true }) || element.closest('svg.plan')) continue;
       const [text, ground] = [parse(getComputedStyle(element).color), groundOf(element)];
       const [light, dark] = [luminance(text), luminance(ground)].sort((a, b) => b - a);

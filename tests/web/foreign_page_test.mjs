@@ -1,4 +1,4 @@
-// What a page of another site can do to a rig through the browser of a person whom the daemon knows: nothing.
+// A page of another site must not change a rig through a browser that has access to the daemon.
 //   node tests/web/foreign_page_test.mjs --luxrig PROGRAM
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
@@ -14,7 +14,7 @@ const daemon = spawn(luxrig, ['run', source('tests/rigs/room'), '--sim', '--port
 let log = '';
 for (const out of [daemon.stdout, daemon.stderr]) out.on('data', (part) => (log += part));
 
-/** Everything a page can send; runs in it. */
+/** Sends everything that a page can send; runs in the page. */
 async function attack(rig) {
   const body = '{"on":true}';
   const host = new URL(rig).host;
@@ -27,8 +27,8 @@ async function attack(rig) {
     for (const [route, text] of [['/api/blackout', body], ['/api/level', level], ['/api/blackout', within], ['/', within], ['/none', within]])
       for (const mode of ['no-cors', 'cors'])
         asked.push(tell(`${mode} ${type} ${route}`, fetch(rig + route, { method: 'POST', mode, credentials: 'include', headers: { 'Content-Type': type }, body: text })));
-  // A server that refuses by the headers, and then reads on, takes what it has not read yet for the next request: that
-  // begins where its buffer of 4 KiB ended, wherever that is.
+  // A server that refuses by the headers and then reads on takes the unread rest for the next request. That request
+  // begins where the 4 KiB buffer ended, wherever that is.
   for (let head = 400; head < 1000; ++head)
     asked.push(tell(`behind ${head} bytes`, fetch(`${rig}/api/blackout`, { method: 'POST', mode: 'no-cors', credentials: 'include', body: 'x'.repeat(4096 - head) + within })));
   asked.push(tell('no type', fetch(`${rig}/api/blackout`, { method: 'POST', mode: 'no-cors', credentials: 'include', body: new Blob([body]) })));
@@ -74,7 +74,7 @@ try {
   };
   await untouched('nobody');
 
-  // Another site, and another port of the same host, to which the browser even gives the daemon's cookie.
+  // Another site, and another port of the same host, to which the browser even sends the daemon's cookie.
   for (const host of ['localhost', '127.0.0.1']) {
     const site = `http://${host}:${foreign.address().port}/`;
     const other = await page.context().newPage();
@@ -89,14 +89,14 @@ try {
     console.log(`ok  ${site}: ${Object.keys(done).length + 7} requests and 20 streams, and nothing happened`);
   }
 
-  // The page itself goes on, and may do all that.
+  // The page itself still works, and may do all that.
   assert.equal(await page.locator('#line').getAttribute('data-state'), 'live');
   await page.locator('#blackout').click();
   await eventually('the page itself may', async () => (await status()).blackout === true);
   assert.deepEqual(misdeeds, []);
   console.log('ok  the page itself blacks out the rig');
 
-  // A browser that nobody opened gets the page, without the rig, and is told what to do.
+  // A browser without access gets the page without the rig, and instructions.
   const stranger = await browser.newContext();
   const shut = await stranger.newPage();
   await shut.goto(`${rig}/`);

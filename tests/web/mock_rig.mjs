@@ -1,5 +1,5 @@
-// A made-up gallery for the page's test: 12 fixtures, 36 points, 6 meters, and the picture of its plan. The page must
-// not care whether the light is right, only that what it shows is what the daemon said.
+// An invented gallery for the page's test: 12 fixtures, 36 points, 6 meters, and the picture of its plan. The light
+// need not be right: the page must only show what the daemon said.
 import { deflateSync } from 'node:zlib';
 
 const ROOM = { wide_m: 14, deep_m: 9, high_m: 4.2 };

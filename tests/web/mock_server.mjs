@@ -1,6 +1,6 @@
-// Speaks the daemon's HTTP API (tools/luxrigd/API.md) without a rig, for the page's test and for work on the page:
+// Serves the daemon's HTTP API (tools/luxrigd/API.md) without a rig, for the page's test and for work on the page:
 //   node tests/web/mock_server.mjs [--port 9620] [--dist build/release/share/luxrig/web] [--script]
-// --script plays a whole show with faults, over and over; without it the rig holds.
+// --script plays a whole show with faults in a loop; without it the rig holds.
 import { readFile } from 'node:fs/promises';
 import { createServer } from 'node:http';
 import path from 'node:path';
@@ -11,7 +11,7 @@ const TYPES = { '.html': 'text/html; charset=utf-8', '.js': 'text/javascript', '
 const wobble = (seed, t) => Math.sin(seed * 12.9898 + t * 1.7) * 0.6 + Math.sin(seed * 78.233 + t * 0.31) * 0.4;
 const round = (value, digits) => Number(value.toFixed(digits));
 
-/** The scripted show: at which second of it what happens. */
+/** The scripted show: events by second. */
 const SCRIPT = [
   { from: 0, phase: 'fading', share: (t) => t / 4, miss: 0.12 },
   { from: 4, phase: 'settling', miss: 0.12 },
@@ -31,10 +31,10 @@ export class MockDaemon {
   overrides = [];
   alarms = [];
   faulted = new Set(); // names of devices
-  dark = {}; // by name of a fixture: what its entry says besides, as parked and waits_for
+  dark = {}; // by name of a fixture: further fields of its entry, such as parked and waits_for
   posts = []; // bodies of accepted posts
-  silent = false; // the line stays open and says nothing
-  unknown = false; // the browser is, and gets no events
+  silent = false; // the line stays open without data
+  unknown = false; // the browser has no access, and gets no events
   refuse = false; // posts are answered with 503
   scripted = false;
   #streams = new Set();
@@ -99,7 +99,7 @@ export class MockDaemon {
         point.measured_age_s = round((t * 3.1 + i * 0.17) % 0.5, 2);
       }
       point.error = round((point.measured_lux ?? point.predicted_lux) / p.goal - 1, 4);
-      // As the daemon: a goal to 5 %; of some points too little is known to confirm it.
+      // As in the daemon: a goal to 5 %; some points are known too little to confirm it.
       const known = point.measured_lux === undefined && i % 5 === 3 ? 0.06 : 0.02;
       const off = Math.abs(point.error);
       point.verdict = off + known <= 0.05 ? 'met' : off - known > 0.05 ? 'missed' : 'unknown';

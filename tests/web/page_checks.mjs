@@ -1,13 +1,13 @@
-// What the page must do with any daemon, mock or real. Each check throws with a sentence when it is not so.
+// Checks of the page that hold with any daemon, mock or real. Each throws with a sentence on failure.
 import assert from 'node:assert/strict';
 import { eventually } from './browser.mjs';
 
-/** What the page calls what the daemon calls its phases. */
+/** The page's names for the daemon's phases. */
 const PHASES = { idle: 'waiting', moving: 'heads turn', fading: 'fading', settling: 'letting the lamps settle',
   measuring: 'measuring', correcting: 'correcting', holding: 'holding', frozen: 'light held',
   safe_fading: 'fading to the safe look', safe: 'safe look' };
 
-/** As the page's browser may ask for it: a daemon wants to know who asks. */
+/** Asks as the page's browser does: a daemon checks the requester's access. */
 const status = async (page, url) => (await page.context().request.get(new URL('/api/status', url).href)).json();
 const text = (page, selector) => page.locator(selector).first().innerText();
 
@@ -66,7 +66,7 @@ export async function numbersAreLive(page, url) {
   });
 }
 
-/** Hovering a point tells goal, predicted and measured. */
+/** Hovering a point shows goal, predicted and measured. */
 export async function tipTellsThePoint(page, url) {
   const { points } = await status(page, url);
   const index = Math.max(0, points.findIndex((p) => p.measured_lux !== undefined));
@@ -79,7 +79,7 @@ export async function tipTellsThePoint(page, url) {
   await page.mouse.move(1, 1);
 }
 
-/** The button's press reaches the daemon and its state comes back, both ways; here by keyboard. Leaves the light on. */
+/** Pressing the button reaches the daemon and shows its state, on and off; here by keyboard. Leaves the light on. */
 export async function blackoutGoesBothWays(page, url) {
   const button = page.locator('#blackout');
   const before = (await status(page, url)).blackout;
@@ -96,7 +96,7 @@ export async function blackoutGoesBothWays(page, url) {
   }
 }
 
-/** Nothing sticks out sideways at this window's width. */
+/** At this window's width nothing overflows sideways. */
 export async function fitsItsWidth(page) {
   await eventually('the content is as wide as its window', async () => {
     const [content, window_] = await page.evaluate(() => [document.documentElement.scrollWidth, window.innerWidth]);

@@ -19,7 +19,7 @@ const option = (name) => {
 const DESKTOP = { width: 1440, height: 900 };
 const PHONE = { width: 390, height: 844 };
 
-/** Prints what held; the first that does not ends the run. */
+/** Prints each check that held; the first failure ends the run. */
 async function check(what, body) {
   const started = Date.now();
   try {
@@ -262,5 +262,5 @@ try {
 } finally {
   await browser.close();
 }
-// After a failure the daemon's stand-in still listens, and would keep this process.
+// After a failure the mock daemon still listens, and would keep this process alive.
 process.exit(process.exitCode ?? 0);

@@ -1,5 +1,5 @@
-// One definition of met, missed and unknown: what solve and run print, their JSON, their exit codes and the page agree,
-// for every shipped rig and for rigs made wrong on purpose.
+// One definition of met, missed and unknown: the output of solve and run, their JSON, their exit codes and the page
+// agree, for every shipped rig and for rigs made wrong on purpose.
 //   node tests/web/verdicts_test.mjs --luxrig PROGRAM
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
@@ -128,7 +128,7 @@ async function check(what, rig, expected = {}) {
   assert.equal(run.code, status.goals.missed > 0 || status.limits.exceeded > 0 || status.limit_violations_in_truth > 0 ? 1 : 0,
     `${what}, run's exit code\n${run.out}`);
   assert.equal(status.goals_met, status.goals.missed + status.goals.unknown === 0, what);
-  // What is called met is near its goal in the simulator's truth, what is missed is not.
+  // A goal called met is near in the simulator's truth; a missed one is not.
   for (const p of status.points) {
     if (!p.goal_lux) continue;
     const off = Math.abs(p.truth_lux / p.goal_lux - 1);

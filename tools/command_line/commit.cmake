@@ -1,9 +1,9 @@
-# Writes the file that defines luxrig::kVersion, at each build; only when it changes, so that nothing else is compiled again.
+# Writes the file that defines luxrig::kVersion, at each build. Only a change rewrites it, so nothing else recompiles.
 #   cmake -D SOURCE=FOLDER -D VERSION=0.1.0 -D OUTPUT=FILE -P commit.cmake
 set(commit "")
 find_program(GIT git)
 if(GIT)
-  # A prefix: the folder lies in a repository that is not its own, such as a tarball unpacked in one.
+  # A prefix: the folder lies inside another repository, such as an unpacked tarball.
   execute_process(COMMAND ${GIT} -C ${SOURCE} rev-parse --show-prefix OUTPUT_VARIABLE prefix RESULT_VARIABLE failed
                   ERROR_QUIET OUTPUT_STRIP_TRAILING_WHITESPACE)
   if(NOT failed AND prefix STREQUAL "")
@@ -12,7 +12,7 @@ if(GIT)
   endif()
 endif()
 if(commit)
-  # Without locks: a build must not get into the way of who commits meanwhile.
+  # Without locks: a build must not disturb a commit that runs at the same time.
   execute_process(COMMAND ${GIT} --no-optional-locks -C ${SOURCE} status --porcelain --untracked-files=no
                   OUTPUT_VARIABLE changes ERROR_QUIET OUTPUT_STRIP_TRAILING_WHITESPACE)
   if(changes)

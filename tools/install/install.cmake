@@ -2,12 +2,12 @@
 # register maps, man pages, completion, the systemd unit. Programs find the rest beside them, in ../share/luxrig.
 include(GNUInstallDirs)
 
-# A build is laid out like an installation.
+# The build folder is laid out like an installation.
 file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/share/luxrig)
 file(CREATE_LINK ${PROJECT_SOURCE_DIR}/rigs ${CMAKE_BINARY_DIR}/share/luxrig/rigs SYMBOLIC)
 
-# Man pages and completion are written by the programs themselves, from what they declare of their options. Which pages
-# there are only they know: one for each command, and those of commands that are no more go with the folder.
+# The programs write man pages and completion themselves, from their declared options. Only they know which pages there
+# are, one for each command. The folder is cleared first, so pages of removed commands go.
 set(manual ${CMAKE_BINARY_DIR}/manual)
 set(manuals "")
 foreach(program luxrig luxrigd luxrig-sim)
@@ -26,7 +26,7 @@ foreach(program luxrig luxrigd luxrig-sim)
   list(APPEND manuals ${of_program}/fish)
 endforeach()
 add_custom_target(manual DEPENDS ${manuals})
-# All that `cmake --install` wants.
+# Everything that `cmake --install` needs.
 add_custom_target(installable DEPENDS luxrig luxrigd luxrig-sim luxrig-guardian manual)
 if(TARGET web)
   add_dependencies(installable web)
@@ -37,7 +37,7 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/rigs/ DESTINATION ${CMAKE_INSTALL_DATADI
 if(TARGET web)
   install(DIRECTORY ${LUXRIG_WEB_DIR}/ DESTINATION ${CMAKE_INSTALL_DATADIR}/luxrig/web)
 endif()
-# Debian's zsh reads what packages bring from another folder than what was installed by hand.
+# Debian's zsh reads completions of packages from another folder than those installed by hand.
 install(CODE [[
   set(zsh_folder site-functions)
   if(CMAKE_INSTALL_PREFIX MATCHES "/usr$")

@@ -1,5 +1,5 @@
 #pragma once
-/// A datagram channel without a network: it records what is sent and returns what the test scripts.
+/// A datagram channel without a network: it records sent datagrams and returns scripted ones.
 
 #include <deque>
 #include <memory>

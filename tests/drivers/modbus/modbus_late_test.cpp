@@ -1,4 +1,4 @@
-// A busy computer must not look like a dead device: the driver tells its own lateness from the device's.
+// A busy computer must not look like a dead device: the driver distinguishes its own lateness from the device's.
 #include <gtest/gtest.h>
 
 #include <functional>

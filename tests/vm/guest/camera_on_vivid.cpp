@@ -1,7 +1,5 @@
-// The camera driver at vivid, the kernel's virtual video device, whose test patterns and faults are set by its own
-// controls.
-//   camera_on_vivid look|formats|settings|busy|damaged|unplug
-// Exits 0 when all of it held.
+// The camera driver with vivid, the kernel's virtual video device. vivid's own controls set its test patterns and
+// faults. camera_on_vivid look|formats|settings|busy|damaged|unplug Exits 0 if all checks held.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <linux/videodev2.h>
@@ -32,15 +30,15 @@ Time now() {
   return Time{} + std::chrono::duration_cast<Duration>(std::chrono::steady_clock::now().time_since_epoch());
 }
 
-/// vivid's own controls, by name: they have no numbers in the kernel's headers. While the driver has the device open no
-/// other descriptor may set them, so its own serves.
+/// vivid's own controls, by name: the kernel's headers have no numbers for them. While the driver has the device open,
+/// no other descriptor may set them, so this uses the driver's.
 class VividControls {
  public:
   explicit VividControls(std::string path) : path_(std::move(path)) {}
   [[nodiscard]] int set(const std::string& name, int value) const {
     return with_control(name, [value](int fd, const v4l2_queryctrl& about) { return set_at(fd, about.id, value); });
   }
-  /// Of a menu, by what it says.
+  /// Sets a menu control by the text of the choice.
   [[nodiscard]] int choose(const std::string& name, const std::string& choice) const {
     return with_control(name, [&choice](int fd, const v4l2_queryctrl& about) {
       for (int i = about.minimum; i <= about.maximum; ++i) {
@@ -100,7 +98,7 @@ Rig rig_of(const std::string& device, PixelFormat format = PixelFormat::any, int
 
 std::string why(const Result<RawPicture>& picture) { return picture ? std::string("taken") : picture.error().detail; }
 
-/// The mean of each channel over the picture's middle, or -1.
+/// Mean of each channel over the middle of the picture, or -1.
 Vec3 middle(const Result<RawPicture>& picture) {
   if (!picture) return Vec3::Constant(-1);
   Vec3 sum = Vec3::Zero();
@@ -153,7 +151,7 @@ void formats() {
       if (!grey) {
         check((got - colour.rgb).cwiseAbs().maxCoeff() < 0.02, "is that colour");
       } else if (colour.rgb.minCoeff() == 1 || colour.rgb.maxCoeff() == 0) {
-        // vivid reckons in eight bits, which grey formats have at their upper end.
+        // vivid calculates in eight bits, which grey formats have at their upper end.
         check(std::abs(got.x() - colour.rgb.x()) < 0.01, "is that grey");
       }
     }
@@ -193,7 +191,7 @@ void settings() {
   wanted.exposure_s.reset();
   wanted.gain = 1000;
   check(!fix_settings(*channel, wanted), "a gain that it has not is refused");
-  // What its automatic gain chooses changes by itself.
+  // Its automatic gain changes values by itself.
   check(channel->set(VideoControl::brightness, 3) && channel->set(VideoControl::autogain, 1), "as somebody set it up");
   const FoundSettings found = settings_found(*channel);
   wanted.gain = 77;

@@ -1,9 +1,9 @@
-# In the guest: the canopen driver and the simulated axes as two processes on a real SocketCAN interface, candump and
-# cansend as witnesses; then a controller with states.
+# In the guest: the canopen driver and the simulated axes as two processes on a real SocketCAN interface, with candump
+# and cansend as witnesses. Then a controller with states.
 set -e
 witness=/tmp/dump
 fail() { echo "FAILED: $*"; tail -n 30 $witness; exit 1; }
-# One frame must match this extended regular expression, as "705#05".
+# One frame must match this extended regular expression, such as "705#05".
 seen() { grep -qE " $1\$" $witness || fail "candump has not seen $1"; }
 
 /bin/ip link add vcan0 type vcan
@@ -23,9 +23,9 @@ seen '000#8005'; seen '000#0105'; seen '000#0106'                  # NMT: pre-op
 seen '705#00'; seen '705#05'; seen '77F#05'                        # boot-up, heartbeats of node and master
 seen '605#4000100000000000'; seen '585#4300100092010200'           # SDO: device type
 seen '605#2B07600003000000'; seen '585#6007600000000000'           # quick stop when the master dies
-seen '605#2316100[1]2C017F00'; seen '605#2F60600006000000'         # hears the master, 300 ms; homing mode
+seen '605#2316100[1]2C017F00'; seen '605#2F60600006000000'         # watches the master, 300 ms; homing mode
 seen '605#2F60600001000000'                                        # profile position
-seen '080#'; seen '205#3F00[0-9A-F]{8}'                            # SYNC; a set-point, changed at once
+seen '080#'; seen '205#3F00[0-9A-F]{8}'                            # SYNC; a set-point, with immediate change
 seen '185#37[0-9A-F]{12}'                                          # operation enabled
 
 echo "--- cansend asks a drive, and the driver dies while the head turns"

@@ -1,6 +1,6 @@
-// Both ends of a CAN bus, each a process of its own on a real SocketCAN interface:
-//   can_axes nodes IF                     two simulated axes, nodes 5 and 6, until SIGTERM; then where they truly are
-//   can_axes drive IF PAN TILT SECONDS    the canopen driver; exits 0 once the head stands there, says what changes
+// Both ends of a CAN bus, each in its own process on a real SocketCAN interface:
+//   can_axes nodes IF                     two simulated axes, nodes 5 and 6, until SIGTERM; then prints their angles
+//   can_axes drive IF PAN TILT SECONDS    the canopen driver; prints changes, exits 0 once the head has arrived
 #include <fmt/format.h>
 #include <linux/can.h>
 #include <linux/can/raw.h>
@@ -104,13 +104,13 @@ int drive(const char* interface_name, double pan_deg, double tilt_deg, double se
     const std::vector<Health> health = driver->health(now);
     for (std::size_t i = 0; i < health.size(); ++i) {
       const std::string text = fmt::format("{} {} {}", health[i].device, name_of(health[i].life), health[i].detail);
-      // Figures that only grow are not news.
+      // Counters that only grow are not printed again.
       if (text.substr(0, 40) == said[i].substr(0, 40)) continue;
       said[i] = text;
       fmt::print("DRIVE {}\n", text);
       std::fflush(stdout);
     }
-    // A way takes 4 s at most, and the head is told of its end by the drives; the nodes' own word is the test's.
+    // A move takes 4 s at most. The drives report its end to the head; the test trusts the nodes' own output.
     if (well && now - well_since > std::chrono::seconds(6)) break;
     std::this_thread::sleep_for(driver->bounds().write_period);
   }

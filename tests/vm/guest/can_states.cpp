@@ -1,5 +1,5 @@
-// The CAN channel at a controller that has states: slcan on a pseudo-terminal, at whose other end this program plays
-// the adapter. Exits 0 when the channel saw all of it.
+// The CAN channel at a controller with states: slcan on a pseudo-terminal, where this program plays the adapter at the
+// other end. Exits 0 if the channel saw all states.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <net/if.h>
@@ -28,7 +28,7 @@ void check(bool so, std::string_view what) {
   failures += !so;
 }
 
-/// Takes what the kernel sends to the adapter, unless it shall not read.
+/// Reads what the kernel sends to the adapter, unless reads is false.
 struct Adapter {
   explicit Adapter(int fd) : master(fd) {}
   int master;
@@ -105,7 +105,7 @@ int main() {
     }
     return so();
   };
-  adapter.say("t70617F\rt705105\r");  // node 6 is not ours
+  adapter.say("t70617F\rt705105\r");  // node 6 does not belong to us
   check(until([&] { return last.has_value(); }) && last->id == 0x705 && last->data[0] == 5,
         "a filter lets ours through");
   check(last && last->received && last->received->count() > 0, "with the kernel's time");
@@ -128,7 +128,7 @@ int main() {
   adapter.say("t705105\r");
   check(until([&] { return last && last->id == 0x705; }) && state.state() == ControllerState::active, "and hears");
 
-  adapter.reads = false;  // nobody takes what is sent
+  adapter.reads = false;  // the adapter no longer reads
   bool full = false;
   for (int i = 0; i < 5000 && !full; ++i) {
     const auto sent = channel->send(sync);

@@ -1,6 +1,6 @@
 /// The simulated ENTTEC widget behind qemu's FTDI chip: its serial side is a socket that qemu connects to.
 ///   enttec_on_socket SOCKET LOG
-/// LOG gets a line "slot 1: N" whenever that changes, and at the end what the widget has seen.
+/// LOG gets a line "slot 1: N" on each change, and at the end a summary of the widget.
 
 #include <poll.h>
 #include <signal.h>

@@ -1,6 +1,6 @@
 /// Plugs the simulated uDMX into this kernel: vhci_hcd gets one end of a socket pair, the model answers at the other.
 ///   udmx_on_vhci PORT                     stays until it is killed, which unplugs the device
-/// Writes to stdout: "plugged", then "slot 1: N" whenever that changes.
+/// Writes to stdout: "plugged", then "slot 1: N" on each change.
 
 #include <fcntl.h>
 #include <poll.h>

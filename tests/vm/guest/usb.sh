@@ -1,10 +1,10 @@
-# In the guest: USB drivers at a real kernel. Ends with 0 when all of it held.
+# In the guest: USB drivers on a real kernel. Ends with 0 if all held.
 set -e
 trap 'code=$?; [ $code = 0 ] || head -n 40 /tmp/*.log; exit $code' EXIT
 holder() { for d in /sys/bus/usb/devices/*:1.0/driver; do basename "$(readlink "$d")"; done; }
 ftdi() { for d in /sys/bus/usb/devices/*; do [ "$(cat $d/idVendor 2>/dev/null)" = 0403 ] && echo "$d"; done; true; }
 
-# --- udev: the rule makes what is plugged in belong to plugdev ---
+# --- udev: the rule gives plugged-in devices to plugdev ---
 echo 'plugdev:x:46:' >/etc/group
 systemd-udevd --daemon
 udevadm trigger
@@ -24,7 +24,7 @@ cat /tmp/pro.log
 for i in 1 2 3 4 5 6 7 8 9 10; do [ ! -e /dev/ttyUSB0 ] || break; sleep 0.2; done
 ls /dev/ttyUSB0
 
-# --- a program that has the serial port open is named, not robbed ---
+# --- a program that has the serial port open is named in the error, and keeps it ---
 mkdir -p /var/lock
 echo $$ >/var/lock/LCK..ttyUSB0
 usb_driver enttec_pro life=faulted >/tmp/lock.log

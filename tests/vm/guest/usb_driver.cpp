@@ -1,8 +1,11 @@
-/// One USB driver of the registry at a real kernel, told by a script what to do.
-///   usb_driver NAME WORD...      words: set=0…255 (slot 1, then 44 cycles)  wait=MS (cycles)  life=active|faulted
-///   (until,
-///                                at most 15 s)  off (deactivate)  on (activate)  print=TEXT
-/// Exits 0 when every life= came to be. What it sees goes to stdout.
+/// One USB driver of the registry on a real kernel, controlled by words of a script.
+///   usb_driver NAME WORD...
+///       set=0…255     slot 1, then 44 cycles
+///       wait=MS       cycles
+///       life=active   or life=faulted: cycles until then, at most 15 s
+///       off, on       deactivate, activate
+///       print=TEXT
+/// Exits 0 if every life= was reached. Prints its observations to stdout.
 
 #include <cstdio>
 #include <cstdlib>
