@@ -12,6 +12,7 @@
 #include <span>
 
 #include "core/output/desk_blend.h"
+#include "core/rig/equipment.h"
 
 namespace luxrig {
 

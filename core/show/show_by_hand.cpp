@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "core/check.h"
-#include "core/rig/housing.h"
 #include "core/show/show_state.h"
 
 namespace luxrig {
@@ -15,19 +14,8 @@ namespace {
 
 /// A level that is lower than its setting by more than this counts as kept down.
 constexpr double kSameLevel = 1e-3;
-constexpr double kMaxGoal_lx = 1e6;
 
 }  // namespace
-
-std::string ByHand::complaint(bool switched) const {
-  if (what == What::goal) {
-    if (value >= 0 && value <= kMaxGoal_lx) return {};
-    return fmt::format("a goal is 0 to {:g} lx, not {:g}", kMaxGoal_lx, value);
-  }
-  if (!(value >= 0 && value <= 1)) return fmt::format("a level is 0 (dark) to 1 (full), not {:g}", value);
-  if (switched && value > 0 && value < 1) return fmt::format("it is on or off: give 0 or 1, not {:g}", value);
-  return {};
-}
 
 Result<void> ShowController::State::hold(Time now, std::span<const ByHand> wanted) {
   if (asked_safe) return refusal("the show has ended in its safe look: apply a plan first");
@@ -37,50 +25,21 @@ Result<void> ShowController::State::hold(Time now, std::span<const ByHand> wante
     if (const std::string wrong = one.complaint(level && rig.fixtures[one.index].switched); !wrong.empty())
       return refusal(fmt::format("{}: {}", level ? rig.fixtures[one.index].name : rig.points[one.index].name, wrong));
   }
-  for (const ByHand& one : wanted) {
-    if (one.what == ByHand::What::goal) {
-      hand_goal[one.index] = one;
-      continue;
-    }
-    std::vector<std::size_t> fixtures = {one.index};
-    if (one.whole_housing) fixtures = housing_of(rig, one.index);
-    double brightest = 0;
-    for (const std::size_t f : fixtures) brightest = std::max(brightest, without_hands[f]);
-    for (const std::size_t f : fixtures) {
-      hand_level[f] = one;
-      hand_level[f]->index = f;
-      hand_level[f]->whole_housing = false;
-      if (fixtures.size() > 1 && brightest > 0) hand_level[f]->value = one.value * without_hands[f] / brightest;
-    }
-  }
+  hands.set(rig, wanted);
   start_with_hands(now);
   return {};
 }
 
 std::size_t ShowController::State::release(Time now, std::span<const std::size_t> fixtures,
                                            std::span<const std::size_t> points) {
-  std::size_t released = 0;
-  for (const std::size_t f : fixtures) {
-    if (!hand_level.at(f)) continue;
-    hand_level[f].reset();
-    ++released;
-  }
-  for (const std::size_t p : points) {
-    if (!hand_goal.at(p)) continue;
-    hand_goal[p].reset();
-    ++released;
-  }
+  const std::size_t released = hands.release(fixtures, points);
   if (released > 0) start_with_hands(now);
   return released;
 }
 
 void ShowController::State::release_what_is_over(Time now) {
-  std::vector<std::size_t> fixtures, points;
-  for (std::size_t f = 0; f < hand_level.size(); ++f)
-    if (hand_level[f] && hand_level[f]->until && *hand_level[f]->until <= now) fixtures.push_back(f);
-  for (std::size_t p = 0; p < hand_goal.size(); ++p)
-    if (hand_goal[p] && hand_goal[p]->until && *hand_goal[p]->until <= now) points.push_back(p);
-  if (!fixtures.empty() || !points.empty()) release(now, fixtures, points);
+  const HandSettings::Over over = hands.over(now);
+  if (!over.empty()) release(now, over.fixtures, over.points);
 }
 
 /// Values that the look leaves out come from the rig.
@@ -97,33 +56,22 @@ void ShowController::State::take_points(const Look& look) {
   }
 }
 
-/// A plan ends the settings by hand of the plan before. Settings made in the running show stay.
 void ShowController::State::take_levels_of_plan(Time now, const std::vector<double>& levels, const Look& look) {
-  without_hands = levels;
-  for (std::size_t f = 0; f < levels.size(); ++f) {
-    if (hand_level[f] && !hand_level[f]->of_plan) {
-      unsolved = true;  // the plan was made without it
-      continue;
-    }
-    hand_level[f].reset();
-    if (look.solved_levels.empty() || !look.solved_levels[f]) continue;
-    hand_level[f] = ByHand{ByHand::What::level, f, levels[f], now};
-    hand_level[f]->of_plan = true;
-    without_hands[f] = std::min(*look.solved_levels[f], max_of(f));
-  }
-  for (const auto& goal : hand_goal) unsolved = unsolved || goal.has_value();
+  std::vector<double> max_level;
+  for (std::size_t f = 0; f < rig.fixtures.size(); ++f) max_level.push_back(max_of(f));
+  if (hands.take_plan(now, levels, look, max_level)) unsolved = true;
 }
 
 void ShowController::State::tell_estimator() {
   for (std::size_t p = 0; p < rig.points.size(); ++p) {
-    points_in_force[p].goal_lx = hand_goal[p] ? std::optional(hand_goal[p]->value) : planned.goal_lx[p];
+    points_in_force[p].goal_lx = hands.goal(p) ? std::optional(hands.goal(p)->value) : planned.goal_lx[p];
     points_in_force[p].max_lx = planned.max_lx[p];
     points_in_force[p].weight = planned.weight[p];
   }
   estimator.set_points(points_in_force);
   for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
-    estimator.set_held(f, hand_level[f] && !bypassed_lamp[f]);
-    estimator.set_max_level(f, bypassed_lamp[f] ? 0 : max_of(f));
+    estimator.set_held(f, hands.level(f) && !bypassed.lamp(f));
+    estimator.set_max_level(f, bypassed.lamp(f) ? 0 : max_of(f));
   }
   tell_lost_lamps();
 }
@@ -131,25 +79,16 @@ void ShowController::State::tell_estimator() {
 void ShowController::State::start_with_hands(Time now) {
   unsolved = true;
   tell_estimator();
-  if (cue) start_cue(now, with_hands(without_hands));
+  if (cue) start_cue(now, with_hands(hands.levels_without()));
 }
 
 std::vector<double> ShowController::State::with_hands(std::vector<double> levels) const {
   for (std::size_t f = 0; f < levels.size(); ++f)
-    if (bypassed_lamp[f])
+    if (bypassed.lamp(f))
       levels[f] = 0;
-    else if (hand_level[f])
-      levels[f] = std::min(hand_level[f]->value, program.max_level[f]);
+    else if (hands.level(f))
+      levels[f] = std::min(hands.level(f)->value, program.max_level[f]);
   return levels;
-}
-
-std::vector<ByHand> ShowController::State::by_hand() const {
-  std::vector<ByHand> all;
-  for (const auto& one : hand_level)
-    if (one) all.push_back(*one);
-  for (const auto& one : hand_goal)
-    if (one) all.push_back(*one);
-  return all;
 }
 
 /// Why a setting by hand is not in effect; empty if it is.
@@ -164,7 +103,7 @@ std::string ShowController::State::why_not(Time now, const ByHand& held) const {
     return held.index < why.size() ? why[held.index] : std::string();
   }
   if (lost[held.index]) return "it does not answer: it is held as it was, then goes to its safe level";
-  if (bypassed_lamp[held.index]) return "it is bypassed";
+  if (bypassed.lamp(held.index)) return "it is bypassed";
   if (parked(held.index)) return "it is parked until the next plan";
   const double most = program.max_level[held.index];
   if (held.value > most + kSameLevel) return fmt::format("the most it may have is {:g} (max_level)", most);
@@ -194,6 +133,6 @@ std::size_t ShowController::release(Time now, std::span<const std::size_t> fixtu
   return state_->release(now, fixtures, points);
 }
 
-std::vector<ByHand> ShowController::by_hand() const { return state_->by_hand(); }
+std::vector<ByHand> ShowController::by_hand() const { return state_->hands.all(); }
 
 }  // namespace luxrig

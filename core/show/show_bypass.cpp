@@ -7,46 +7,27 @@
 
 namespace luxrig {
 
-bool ShowController::State::any_lamp_bypassed() const {
-  return std::any_of(bypassed_lamp.begin(), bypassed_lamp.end(), [](const auto& since) { return since.has_value(); });
-}
-
 double ShowController::State::max_of(std::size_t fixture) const {
   return parked(fixture) ? 0 : rig.max_level(rig.fixtures[fixture]);
 }
 
 void ShowController::State::bypass(Time now, std::span<const std::size_t> fixtures,
                                    std::span<const std::size_t> luxmeters, bool on) {
-  bool lamps = false, meters = false;
-  const auto set = [&](std::optional<Time>& since, bool& any) {
-    if (since.has_value() == on) return;
-    since = on ? std::optional(now) : std::nullopt;
-    any = true;
-  };
-  for (const std::size_t f : fixtures) {
-    bool changed = false;
-    set(bypassed_lamp.at(f), changed);
-    if (!changed) continue;
-    lamps = true;
+  const std::vector<std::size_t> lamps = bypassed.set_lamps(now, fixtures, on);
+  for (const std::size_t f : lamps)
     if (!on) program.max_level[f] = max_of(f);
-  }
-  for (const std::size_t m : luxmeters) {
-    bool changed = false;
-    set(bypassed_meter.at(m), changed);
-    if (!changed) continue;
-    meters = true;
+  const std::vector<std::size_t> meters = bypassed.set_meters(now, luxmeters, on);
+  for (const std::size_t m : meters) {
     // What it taught may be as wrong as its readings now: it is not known when it failed.
     estimator.forget(m);
-    measured[m].reset();
+    readings.forget(m);
     scale.forget(m);
-    believed[m].reset();
-    heard[m].reset();
     health.judged(m, now, "");
   }
-  if (!lamps && !meters) return;
-  health.set_bypassed(bypassed_lamp, bypassed_meter);
+  if (lamps.empty() && meters.empty()) return;
+  health.set_bypassed(bypassed.lamps(), bypassed.meters());
   breaches.clear();
-  if (lamps) return start_with_hands(now);  // the rest is solved without them
+  if (!lamps.empty()) return start_with_hands(now);  // the rest is solved without them
   tell_estimator();
   // Limits that relied on it hold by the model alone from here on.
   if (cue && phase != Phase::idle) start_cue(now, asked);
@@ -54,8 +35,8 @@ void ShowController::State::bypass(Time now, std::span<const std::size_t> fixtur
 
 /// Once a bypassed lamp is dark, nothing lights it, not even a desk.
 void ShowController::State::close_bypassed(Time now) {
-  for (std::size_t f = 0; f < bypassed_lamp.size(); ++f) {
-    if (!bypassed_lamp[f] || program.max_level[f] <= 0 || program.to_level[f] > 0 || !program.done(now)) continue;
+  for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
+    if (!bypassed.lamp(f) || program.max_level[f] <= 0 || program.to_level[f] > 0 || !program.done(now)) continue;
     program.max_level[f] = 0;
     ++program.revision;
   }
@@ -65,8 +46,8 @@ void ShowController::State::tell_bypassed(ShowStatus& status) const {
   const auto share = [](const PointStatus& point) {
     return point.light.lux > 0 ? 100 * point.light.half_width_lx / point.light.lux : 100.0;
   };
-  for (std::size_t f = 0; f < bypassed_lamp.size(); ++f) {
-    if (!bypassed_lamp[f]) continue;
+  for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
+    if (!bypassed.lamp(f)) continue;
     const std::string& name = rig.fixtures[f].name;
     std::string risk = health.lamp_silent(f)
                            ? fmt::format(
@@ -77,10 +58,10 @@ void ShowController::State::tell_bypassed(ShowStatus& status) const {
                                  "fixture \"{}\" is bypassed: it is held dark, and the others make up for it "
                                  "as far as they can",
                                  name);
-    status.bypassed.push_back({false, f, *bypassed_lamp[f], std::move(risk)});
+    status.bypassed.push_back({false, f, *bypassed.lamps()[f], std::move(risk)});
   }
-  for (std::size_t m = 0; m < bypassed_meter.size(); ++m) {
-    if (!bypassed_meter[m]) continue;
+  for (std::size_t m = 0; m < rig.luxmeters.size(); ++m) {
+    if (!bypassed.meter(m)) continue;
     const Luxmeter& meter = rig.luxmeters[m];
     std::string risk = fmt::format("luxmeter \"{}\" is bypassed: it is not read", meter.name);
     if (meter.point) {
@@ -92,7 +73,7 @@ void ShowController::State::tell_bypassed(ShowStatus& status) const {
       else
         risk += fmt::format("; the light at {} is then known by the model alone, ± {:.0f} %", name, share(point));
     }
-    status.bypassed.push_back({true, m, *bypassed_meter[m], std::move(risk)});
+    status.bypassed.push_back({true, m, *bypassed.meters()[m], std::move(risk)});
   }
   for (const Bypassed& one : status.bypassed) {
     const std::string& name = one.luxmeter ? rig.luxmeters[one.index].name : rig.fixtures[one.index].name;

@@ -61,24 +61,16 @@ ShowController::State::State(const Rig& rig_in, const LightModel& model, std::sp
     : rig(rig_in),
       estimator(rig, model),
       health(rig),
-      samples(rig.luxmeters.size()),
+      readings(rig.luxmeters.size()),
+      scale(rig),
       head_guard(rig),
       tells_of_lamp(fixtures_that_tell_of_lamps(rig)),
       powerless(rig.fixtures.size(), 0),
       lost(rig.fixtures.size()),
-      measured(rig.luxmeters.size()),
-      sampled_lx(rig.luxmeters.size()),
-      sample_changed(rig.luxmeters.size(), false),
-      believed(rig.luxmeters.size()),
-      heard(rig.luxmeters.size()),
       taken_level(rig.fixtures.size(), 0.0),
-      hand_level(rig.fixtures.size()),
-      without_hands(rig.fixtures.size(), 0.0),
-      hand_goal(rig.points.size()),
+      hands(rig),
       points_in_force(rig.points),
-      scale(rig),
-      bypassed_lamp(rig.fixtures.size()),
-      bypassed_meter(rig.luxmeters.size()) {
+      bypassed(rig) {
   const std::vector<double> dark(rig.fixtures.size(), 0.0);
   for (const Fixture& fixture : rig.fixtures) {
     program.max_level.push_back(rig.max_level(fixture));
@@ -122,7 +114,7 @@ void ShowController::State::fade(Time now, std::vector<double> from, std::vector
   program.curve = curve;
   ++program.revision;
   guard_against_desks(now);
-  samples.restart(program.start + program.duration + from_seconds(rig.control.settle_s));
+  readings.restart(program.start + program.duration + from_seconds(rig.control.settle_s));
   drifted = 0;
 }
 
@@ -133,7 +125,7 @@ void ShowController::State::fade(Time now, std::vector<double> from, std::vector
 void ShowController::State::guard(Time now, const std::vector<double>& from, const std::vector<double>& to) {
   constexpr int kSamples = 8;
   constexpr double kOfRounding = 1 + 1e-9, kAllowed = 1 + kBreachSlack;
-  const bool nothing_new = sampled_at <= program.start;  // a correction starts at the instant of its sample
+  const bool nothing_new = readings.sampled_at() <= program.start;  // a correction starts at the instant of its sample
   WorstCase worst = estimator.worst_case(from, to, now);
   const auto lights = static_cast<Eigen::Index>(from.size());
   const Eigen::Map<const Eigen::VectorXd> begin(from.data(), lights), end(to.data(), lights);
@@ -198,7 +190,7 @@ void ShowController::State::take_look(Time now) {
     // Gains would still hold, local errors of the model would not; telling them apart takes readings.
     estimator = GainEstimator(rig, awaited->model);
     scale.forget_all();
-    std::fill(measured.begin(), measured.end(), std::nullopt);
+    readings.disbelieve_all();
     model_joints = awaited->look.joints;
   }
   tell_estimator();
@@ -262,7 +254,7 @@ void ShowController::State::go_to_asked(Time now, std::vector<double> present) {
   std::vector<double> sent = *cue;
   leave_out_lost(sent);
   for (std::size_t f = 0; f < sent.size(); ++f)
-    if (bypassed_lamp[f]) sent[f] = (*cue)[f] = 0;
+    if (bypassed.lamp(f)) sent[f] = (*cue)[f] = 0;
   if (!start_lamps(now, present, sent)) fade(now, std::move(present), sent, rig.control.fade_s, rig.control.fade_curve);
   enter(Phase::fading, now);
 }
@@ -297,7 +289,7 @@ void ShowController::State::look_at_failures(Time now) {
     if (std::string cause = health.cause(too_much_lost()); !cause.empty()) failure = std::move(cause);
   }
   for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) {
-    if (health.meter_lost(i)) measured[i].reset();
+    if (health.meter_lost(i)) readings.disbelieve(i);
   }
   converged = converged && all_metered_goals_arrived();
   watch_losses(now);
@@ -349,7 +341,7 @@ void ShowController::State::advance(Time now) {
       for (std::size_t i = 0; i < rig.luxmeters.size(); ++i)
         any_living = any_living || (!health.meter_lost(i) && !in_doubt(i));
       if (!any_living) return enter(Phase::holding, now);  // no meter to go by: open loop
-      if (sampled_at == now) solve(now, Solving::For::round);
+      if (readings.sampled_at() == now) solve(now, Solving::For::round);
       return;
     }
     default:
@@ -427,10 +419,8 @@ void ShowController::reading(Time now, const LuxReading& reading) {
   State& state = *state_;
   if (now < state.last || reading.luxmeter >= state.rig.luxmeters.size()) return;
   if (!std::isfinite(reading.lux) || reading.lux < 0) return state.health.garbled(reading.luxmeter, now);
-  if (!state.samples.add(now, reading)) return;
-  state.health.heard(reading.luxmeter, reading.taken);
-  state.heard[reading.luxmeter] = reading;
-  if (!state.health.meter_lost(reading.luxmeter)) state.believed[reading.luxmeter] = reading;
+  if (state.readings.hear(now, reading, state.health.meter_lost(reading.luxmeter)))
+    state.health.heard(reading.luxmeter, reading.taken);
 }
 
 void ShowController::health(Time now, std::span<const Health> devices) {

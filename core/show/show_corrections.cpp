@@ -25,35 +25,29 @@ constexpr double kSmallestChange = 1e-4;
 void ShowController::State::take_sample(Time now) {
   if (program.blackout || shared || !program.done(now) || too_much_lost() || any_dimmed_for_a_zone(program, now))
     return;  // not the light that was asked for
-  if (phase == Phase::measuring ? solving != nullptr : now - sampled_at < kSampleEvery) return;
-  std::vector<LuxReading> readings;
+  if (phase == Phase::measuring ? solving != nullptr : now - readings.sampled_at() < kSampleEvery) return;
+  std::vector<LuxReading> sample;
   for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) {
-    if (in_doubt(i) || bypassed_meter[i]) continue;
-    if (samples.ready(now, i)) {
-      readings.push_back(*samples.sample(i));
+    if (in_doubt(i) || bypassed.meter(i)) continue;
+    if (readings.has_sample(now, i)) {
+      sample.push_back(readings.sample(i));
     } else if (!health.meter_lost(i)) {
       return;
     }
   }
-  if (readings.empty()) return;
-  for (const LuxReading& reading : readings) {
-    sample_changed[reading.luxmeter] = sampled_lx[reading.luxmeter] != reading.lux;
-    sampled_lx[reading.luxmeter] = reading.lux;
-  }
-  for (const Judgement& judgement : estimator.update(now, readings, program.to_level)) {
+  if (sample.empty()) return;
+  for (const Judgement& judgement : estimator.update(now, sample, program.to_level)) {
     health.judged(judgement.luxmeter, now, judgement.why);
-    if (!judgement.believed) {
-      measured[judgement.luxmeter].reset();  // what it taught before stays: limits rely on it
-      continue;
-    }
-    measured[judgement.luxmeter] = *samples.sample(judgement.luxmeter);
+    if (judgement.believed)
+      readings.believe(readings.sample(judgement.luxmeter));
+    else
+      readings.disbelieve(judgement.luxmeter);  // what it taught before stays: limits rely on it
   }
-  scale.look(now, estimator, measured, program.to_level);
-  samples.next();
-  sampled_at = now;
+  scale.look(now, estimator, readings.measured(), program.to_level);
+  readings.take(now, sample);
   bool all_believed = true;
   for (std::size_t i = 0; i < rig.luxmeters.size(); ++i)
-    all_believed = all_believed && (measured[i] || bypassed_meter[i]);
+    all_believed = all_believed && (readings.measured()[i] || bypassed.meter(i));
   afresh = afresh && !all_believed;
 
   std::vector<LimitBreach> present;
@@ -73,19 +67,19 @@ void ShowController::State::solve(Time now, Solving::For what) {
   solving = std::make_shared<Solving>();
   solving->what = what;
   solving->facts = facts;
-  const bool hands = what == Solving::For::hands;
-  std::vector<double> levels = hands ? asked : with_hands(program.to_level);
+  const bool for_hands = what == Solving::For::hands;
+  std::vector<double> levels = for_hands ? asked : with_hands(program.to_level);
   if (!beside) {
-    solving->correction = estimator.correct(levels, now, hands);
+    solving->correction = estimator.correct(levels, now, for_hands);
     solving->done = true;
     return take_solved(now);
   }
   // With present knowledge: what is learned during the solve counts the next time.
-  beside(
-      [to = solving, known = std::make_shared<const GainEstimator>(estimator), levels = std::move(levels), now, hands] {
-        to->correction = known->correct(levels, now, hands);
-        to->done = true;
-      });
+  beside([to = solving, known = std::make_shared<const GainEstimator>(estimator), levels = std::move(levels), now,
+          for_hands] {
+    to->correction = known->correct(levels, now, for_hands);
+    to->done = true;
+  });
 }
 
 /// Drops a solve that is outdated. If it was for settings by hand, that is still to be solved.
@@ -98,12 +92,12 @@ void ShowController::State::take_solved(Time now) {
   if (!solving || !solving->done) return;
   const bool fades = phase == Phase::fading || phase == Phase::settling || phase == Phase::measuring ||
                      phase == Phase::correcting || phase == Phase::holding;
-  const bool hands = solving->what == Solving::For::hands;
+  const bool for_hands = solving->what == Solving::For::hands;
   // Lamps that come on by stages finish that first.
-  if (hands && fades && !program.lamp_starts.empty() && !program.done(now)) return;
+  if (for_hands && fades && !program.lamp_starts.empty() && !program.done(now)) return;
   const std::shared_ptr<Solving> solved = std::exchange(solving, nullptr);
   const bool holds = solved->facts == facts && cue && !program.blackout;
-  if (hands) {
+  if (for_hands) {
     if (!holds || !fades) {
       unsolved = true;  // with the next cue
       if (cue && fades && !program.blackout) {
@@ -139,7 +133,7 @@ void ShowController::State::correct_or_hold(Time now, Correction correction) {
     return;
   }
   for (std::size_t i = 0; i < cue->size(); ++i) {
-    if (lost[i] || bypassed_lamp[i]) {
+    if (lost[i] || bypassed.lamp(i)) {
       correction.level[i] = program.to_level[i];
       continue;
     }
@@ -148,7 +142,7 @@ void ShowController::State::correct_or_hold(Time now, Correction correction) {
     (*cue)[i] = correction.level[i];
     if (!same || !any_lost()) asked[i] = correction.level[i];
   }
-  if (by_hand().empty() && !any_lamp_bypassed()) without_hands = asked;
+  if (hands.all().empty() && !bypassed.any_lamp()) hands.correct(asked);
   ++round;
   corrected_at = now;
   fade(now, present_levels(now), std::move(correction.level), rig.control.correction_fade_s, rig.control.fade_curve);
@@ -156,7 +150,7 @@ void ShowController::State::correct_or_hold(Time now, Correction correction) {
 }
 
 void ShowController::State::watch_drift(Time now) {
-  if (sampled_at != now) return;
+  if (readings.sampled_at() != now) return;
   converged = all_metered_goals_arrived();
   if (solving) return;
   solve(now, breaches.empty() ? Solving::For::drift : Solving::For::round);
@@ -172,9 +166,9 @@ void ShowController::State::look_at_drift(Time now, Correction correction) {
 /// drive the light up (a coat over it), so a person must ask for that by applying the plan again. Only in the safe
 /// look, where no limit relies on what it taught. Never for a meter whose value stood still while the light changed.
 void ShowController::State::doubt_the_past(Time now) {
-  if (!afresh || sampled_at != now) return;
+  if (!afresh || readings.sampled_at() != now) return;
   for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) {
-    if (!health.meter_implausible(i) || !sample_changed[i]) continue;
+    if (!health.meter_implausible(i) || !readings.changed(i)) continue;
     estimator.forget(i);
     ++facts;
     scale.forget(i);

@@ -100,8 +100,8 @@ void ShowController::State::step_desks(Time now) {
   if (shared) converged = false;
   // Readings under a desk's control are not believed, and limits are still being released.
   if (was_shared && !shared) {
-    samples.restart(std::max(now + program.limits_released, program.start + program.duration) +
-                    from_seconds(rig.control.settle_s));
+    readings.restart(std::max(now + program.limits_released, program.start + program.duration) +
+                     from_seconds(rig.control.settle_s));
   }
 }
 

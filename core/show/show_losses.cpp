@@ -58,7 +58,7 @@ void ShowController::State::watch_losses(Time now) {
   bool changed = false;
   std::vector<double> present, before;
   for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
-    const bool apart = rig.safe.scope == SafeScope::rest_stays || bypassed_lamp[f];
+    const bool apart = rig.safe.scope == SafeScope::rest_stays || bypassed.lamp(f);
     const bool lamp = health.lamp_lost(f), gone = apart && (lamp || health.motion_lost(f));
     std::optional<LostFixture>& one = lost[f];
     if (gone && !one) {
@@ -87,7 +87,7 @@ void ShowController::State::watch_losses(Time now) {
   tell_lost_lamps();
   for (std::size_t i = 0; i < rig.luxmeters.size(); ++i)
     if (in_doubt(i)) {
-      measured[i].reset();
+      readings.disbelieve(i);
       health.judged(i, now, "");  // its reading is no fault of its own
     }
   const bool goes_on = phase == Phase::moving || phase == Phase::fading || phase == Phase::settling ||
@@ -100,10 +100,10 @@ std::vector<std::uint8_t> ShowController::State::watched_meters() const {
   std::vector<std::uint8_t> seen(rig.luxmeters.size(), 0);
   for (std::size_t i = 0; i < seen.size(); ++i) {
     const Luxmeter& meter = rig.luxmeters[i];
-    if (health.meter_lost(i) || !believed[i] || !meter.point) continue;
+    const std::optional<LuxReading>& believed = readings.believed()[i];
+    if (health.meter_lost(i) || !believed || !meter.point) continue;
     const bool was = i >= watched.size() || watched[i] != 0;
-    seen[i] =
-        believed[i]->lux <= points_in_force[*meter.point].max_lx.value_or(meter.range_lx) * (was ? 1 : kWellBelow);
+    seen[i] = believed->lux <= points_in_force[*meter.point].max_lx.value_or(meter.range_lx) * (was ? 1 : kWellBelow);
   }
   return seen;
 }

@@ -77,7 +77,7 @@ void ShowController::State::unpark() {
   for (std::size_t f = 0; f < program.parked.size(); ++f) {
     if (program.parked[f] == 0) continue;
     program.parked[f] = 0;
-    if (bypassed_lamp[f]) continue;
+    if (bypassed.lamp(f)) continue;
     program.max_level[f] = max_of(f);
     estimator.set_max_level(f, program.max_level[f]);
   }

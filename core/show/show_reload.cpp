@@ -12,14 +12,7 @@ void ShowController::State::exchange_rig(Time now, const Rig& other, const Light
   LUXRIG_CHECK(other.fixtures.size() == rig.fixtures.size() && other.luxmeters.size() == rig.luxmeters.size() &&
                    (!same_light || other.points.size() == rig.points.size()),
                "another rig's outputs");
-  std::vector<std::optional<ByHand>> goals(other.points.size());
-  for (std::size_t p = 0; p < other.points.size(); ++p)
-    for (std::size_t q = 0; q < rig.points.size(); ++q)
-      if (rig.points[q].name == other.points[p].name && hand_goal[q]) {
-        goals[p] = hand_goal[q];
-        goals[p]->index = p;
-      }
-  hand_goal = std::move(goals);
+  hands.exchange_points(rig.points, other.points);
   const std::vector<double> present = present_levels(now);
   rig = other;
   points_in_force = rig.points;
@@ -30,13 +23,13 @@ void ShowController::State::exchange_rig(Time now, const Rig& other, const Light
   awaited.reset();
   drop_solving();
   parking.clear();
-  for (std::size_t f = 0; f < rig.fixtures.size(); ++f) program.max_level[f] = bypassed_lamp[f] ? 0 : max_of(f);
+  for (std::size_t f = 0; f < rig.fixtures.size(); ++f) program.max_level[f] = bypassed.lamp(f) ? 0 : max_of(f);
   if (same_light) {
     for (std::size_t f = 0; f < rig.fixtures.size(); ++f) estimator.set_max_level(f, program.max_level[f]);
   } else {
     estimator = GainEstimator(rig, model);
     scale.forget_all();
-    std::fill(measured.begin(), measured.end(), std::nullopt);
+    readings.disbelieve_all();
     model_joints = program.joints;
   }
   if (rig.safe.scope == SafeScope::all) lost.assign(rig.fixtures.size(), std::nullopt);

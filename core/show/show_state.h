@@ -10,11 +10,13 @@
 #include <vector>
 
 #include "core/estimation/gain_estimator.h"
-#include "core/estimation/meter_samples.h"
+#include "core/show/bypass_list.h"
 #include "core/show/desk_follower.h"
+#include "core/show/hand_settings.h"
 #include "core/show/head_guard.h"
 #include "core/show/health_watch.h"
 #include "core/show/identify.h"
+#include "core/show/meter_readings.h"
 #include "core/show/scale_watch.h"
 #include "core/show/show_controller.h"
 
@@ -73,7 +75,8 @@ struct ShowController::State {
   Rig rig;
   GainEstimator estimator;
   HealthWatch health;
-  MeterSamples samples;
+  MeterReadings readings;
+  ScaleWatch scale;
   OutputProgram program;
 
   HeadGuard head_guard;
@@ -113,21 +116,13 @@ struct ShowController::State {
   bool converged = false;
   Time corrected_at{};                              ///< when the last correction was decided
   int drifted = 0;                                  ///< samples in a row, while holding, that ask for a correction
-  Time sampled_at{};                                ///< when the last sample was complete
-  std::vector<std::optional<LuxReading>> measured;  ///< per luxmeter: last believed sample
-  std::vector<std::optional<double>> sampled_lx;    ///< per luxmeter: last sample, believed or not
-  std::vector<bool> sample_changed;                 ///< whether it differed from the one before
-  std::vector<std::optional<LuxReading>> believed;  ///< per luxmeter: last reading while it was not lost
-  std::vector<std::optional<LuxReading>> heard;     ///< per luxmeter: last reading, believed or not
   std::vector<double> taken_level;                  ///< per fixture: last level that its device took, as far as known
   std::vector<double> aimed_lx;                     ///< per point: reachable by the last correction; empty before
   std::vector<std::string> why;                     ///< per point: why its goal is not met; empty before the first
   std::vector<LimitBreach> breaches;
 
   // Set by hand (show_by_hand.cpp).
-  std::vector<std::optional<ByHand>> hand_level;  ///< per fixture
-  std::vector<double> without_hands;  ///< plan levels as corrected before settings by hand; a release goes there
-  std::vector<std::optional<ByHand>> hand_goal;  ///< per point
+  HandSettings hands;
   Look planned;                        ///< the look in force as planned: goals, limits and weights of all points
   std::vector<Point> points_in_force;  ///< the rig's points, with goals, limits and weights in force
   bool unsolved = false;               ///< a setting by hand is newer than the levels in force
@@ -141,15 +136,11 @@ struct ShowController::State {
   void start_with_hands(Time now);
   /// The levels, with those held by hand put in.
   [[nodiscard]] std::vector<double> with_hands(std::vector<double> levels) const;
-  [[nodiscard]] std::vector<ByHand> by_hand() const;
   [[nodiscard]] std::string why_not(Time now, const ByHand& held) const;
 
-  ScaleWatch scale;
-
   // Bypassed (show_bypass.cpp).
-  std::vector<std::optional<Time>> bypassed_lamp, bypassed_meter;  ///< per fixture and luxmeter: since when
+  BypassList bypassed;
   void bypass(Time now, std::span<const std::size_t> fixtures, std::span<const std::size_t> luxmeters, bool on);
-  [[nodiscard]] bool any_lamp_bypassed() const;
   void close_bypassed(Time now);
   void tell_bypassed(ShowStatus& status) const;
   /// Highest level that a plan may ask for; 0 for a parked fixture.

@@ -14,7 +14,7 @@ std::vector<double> ShowController::State::safe_levels() const {
     const std::size_t bus = rig.fixtures[i].bus;
     const double of_bus = (bus < rig.buses.size() ? rig.buses[bus].safe_level : std::nullopt).value_or(rig.safe.level);
     const double wanted = rig.fixtures[i].safe_level.value_or(of_bus);
-    const double most = bypassed_lamp[i] ? 0 : program.max_level[i];
+    const double most = bypassed.lamp(i) ? 0 : program.max_level[i];
     level.push_back(std::clamp(rig.fixtures[i].switched ? switched_level(wanted) : wanted, 0.0, most));
   }
   return level;
@@ -31,9 +31,10 @@ double ShowController::State::possible_gain(const Correction& correction) const 
   double most = 0;
   for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) {
     const std::optional<std::size_t> point = rig.luxmeters[i].point;
-    if (!point || !measured[i]) continue;
+    const std::optional<LuxReading>& measured = readings.measured()[i];
+    if (!point || !measured) continue;
     const double goal_lx = points_in_force[*point].goal_lx.value_or(0);
-    if (goal_lx > 0) most = std::max(most, std::abs(correction.aimed_lx[*point] - measured[i]->lux) / goal_lx);
+    if (goal_lx > 0) most = std::max(most, std::abs(correction.aimed_lx[*point] - measured->lux) / goal_lx);
   }
   return most;
 }
@@ -52,7 +53,8 @@ bool ShowController::State::all_metered_goals_arrived() const {
   for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) {
     const std::optional<std::size_t> point = rig.luxmeters[i].point;
     if (!point || !points_in_force[*point].goal_lx) continue;
-    if (!measured[i] || !arrived(*point, measured[i]->lux)) return false;
+    const std::optional<LuxReading>& measured = readings.measured()[i];
+    if (!measured || !arrived(*point, measured->lux)) return false;
     any = true;
   }
   return any;
@@ -155,7 +157,7 @@ ShowStatus ShowController::State::status(Time now) const {
                                                 : status.limits_unknown);
   }
   status.detail = detail(now, status.goals);
-  status.luxmeters = believed;
+  status.luxmeters = readings.believed();
   status.alarms = health.alarms();
   for (const LimitBreach& breach : breaches) {
     const Point& point = points_in_force[breach.point];
@@ -166,11 +168,11 @@ ShowStatus ShowController::State::status(Time now) const {
                      point.name, breach.worst_case_lx, *point.max_lx),
          breach.since});
   }
-  status.by_hand = by_hand();
+  status.by_hand = hands.all();
   for (ByHand& held : status.by_hand) held.why = why_not(now, held);
   tell_losses(status);
   tell_bypassed(status);
-  scale.tell(status, measured);
+  scale.tell(status, readings.measured());
   head_guard.tell(status, rig, program, shared);
   for (std::size_t d = 0; d < desks.size(); ++d) {
     if (desk_names[d].empty()) continue;

@@ -41,7 +41,7 @@ void ShowController::State::remember_levels(Time now) {
   program.levels_at(now, level);
   for (std::size_t f = 0; f < level.size(); ++f)
     if (!health.lamp_silent(f)) taken_level[f] = level[f];
-  for (const std::optional<LuxReading>& reading : heard)
+  for (const std::optional<LuxReading>& reading : readings.heard())
     if (reading) estimator.shows(*reading, taken_level);
 }
 
@@ -84,7 +84,7 @@ bool ShowController::State::seen_by_a_meter(std::size_t fixture, std::span<const
   std::vector<std::uint8_t> chosen(rig.fixtures.size(), 0);
   chosen[fixture] = 1;
   for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) {
-    if (!measured[i] || health.meter_lost(i)) continue;
+    if (!readings.measured()[i] || health.meter_lost(i)) continue;
     const Prediction there = estimator.at_meter(i, level);
     const double its_lx = level[fixture] * estimator.share_at_meter(i, chosen, level) * there.lux;
     if (its_lx >= kSurelySeen * GainEstimator::smallest_jump_lx(there)) return true;
@@ -119,8 +119,9 @@ PointStatus ShowController::State::point_status(std::size_t p, std::span<const d
   status.standard_error_lx = prediction.standard_error_lx;
   if (const auto meter = meter_at(p); meter && !health.meter_lost(*meter)) {
     const bool settled = !program.blackout && program.done(now);
-    const bool has_sample = settled && measured[*meter] && measured[*meter]->taken >= program.start;
-    if (const auto& reading = has_sample ? measured[*meter] : believed[*meter]) {
+    const std::optional<LuxReading>& measured = readings.measured()[*meter];
+    const bool has_sample = settled && measured && measured->taken >= program.start;
+    if (const auto& reading = has_sample ? measured : readings.believed()[*meter]) {
       status.measured_lx = reading->lux;
       status.measured_at = reading->taken;
     }
@@ -134,7 +135,7 @@ PointStatus ShowController::State::point_status(std::size_t p, std::span<const d
     status.light = light_by_model(p, level, prediction);
   }
   // It is not known which of them is right: the light may be higher or lower by this much.
-  const ScaleWatch::Doubt doubt = scale.doubt_at(meter_at(p), measured);
+  const ScaleWatch::Doubt doubt = scale.doubt_at(meter_at(p), readings.measured());
   status.light.half_width_lx += status.light.lux * (std::exp(std::abs(doubt.log_share)) - 1);
   judge_goal(p, level, status);
   judge_limit(p, level, now, status);
@@ -157,12 +158,12 @@ void ShowController::State::judge_goal(std::size_t p, std::span<const double> le
   if (unseen) status.verdict = Verdict::unknown;
   const std::string state = why_not_the_plan(phase, program.blackout);
   std::string settles;
-  if (const ScaleWatch::Doubt doubt = scale.doubt_at(meter_at(p), measured); !doubt.reason.empty()) {
+  if (const ScaleWatch::Doubt doubt = scale.doubt_at(meter_at(p), readings.measured()); !doubt.reason.empty()) {
     settles = doubt.reason;
   } else if (unseen) {
     settles = fmt::format("nobody sees whether fixture \"{}\" burns; a luxmeter in its light would settle it",
                           rig.fixtures[*unseen].name);
-  } else if (const auto meter = meter_at(p); meter && bypassed_meter[*meter]) {
+  } else if (const auto meter = meter_at(p); meter && bypassed.meter(*meter)) {
     settles = fmt::format("luxmeter \"{}\" is bypassed; put it right", rig.luxmeters[*meter].name);
   } else if (status.measured_lx) {
     settles = fmt::format(
@@ -194,17 +195,17 @@ void ShowController::State::judge_limit(std::size_t p, std::span<const double> l
     status.limit_reason = std::move(reason);
   };
   const auto meter = meter_at(p);
+  const std::optional<LuxReading> heard = meter ? readings.heard()[*meter] : std::nullopt;
   const double tolerance = meter ? rig.luxmeters[*meter].tolerance : 0;
   if (status.measured_lx && *status.measured_lx > max_lx * (1 + tolerance))
     return say(LimitVerdict::exceeded, fmt::format("luxmeter \"{}\" reads {:.1f} lx, the limit is {:g} lx",
                                                    rig.luxmeters[*meter].name, *status.measured_lx, max_lx));
-  if (meter && !bypassed_meter[*meter] && !status.measured_lx && heard[*meter] &&
-      heard[*meter]->lux > max_lx * (1 + tolerance))
+  if (meter && !bypassed.meter(*meter) && !status.measured_lx && heard && heard->lux > max_lx * (1 + tolerance))
     return say(
         LimitVerdict::unknown,
         fmt::format("luxmeter \"{}\" read {:.1f} lx last, over the limit of {:g} lx, and is lost or not believed; "
                     "measure by hand",
-                    rig.luxmeters[*meter].name, heard[*meter]->lux, max_lx));
+                    rig.luxmeters[*meter].name, heard->lux, max_lx));
   const auto breach =
       std::find_if(breaches.begin(), breaches.end(), [&](const LimitBreach& one) { return one.point == p; });
   if (breach != breaches.end())
@@ -212,7 +213,7 @@ void ShowController::State::judge_limit(std::size_t p, std::span<const double> l
                fmt::format("with its luxmeter's tolerance it may have {:.1f} lx, the limit is {:g} lx; look for light "
                            "that is not the rig's",
                            breach->worst_case_lx, max_lx));
-  if (const ScaleWatch::Doubt doubt = scale.doubt_at(meter_at(p), measured);
+  if (const ScaleWatch::Doubt doubt = scale.doubt_at(meter_at(p), readings.measured());
       status.measured_lx && doubt.log_share < 0 && *status.measured_lx * std::exp(-doubt.log_share) > max_lx)
     return say(LimitVerdict::unknown,
                fmt::format("it may have {:.1f} lx, the limit is {:g} lx: {}",
