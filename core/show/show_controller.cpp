@@ -67,7 +67,6 @@ ShowController::State::State(const Rig& rig_in, const LightModel& model, std::sp
       tells_of_lamp(fixtures_that_tell_of_lamps(rig)),
       powerless(rig.fixtures.size(), 0),
       lost(rig.fixtures.size()),
-      taken_level(rig.fixtures.size(), 0.0),
       hands(rig),
       points_in_force(rig.points),
       bypassed(rig) {
@@ -252,7 +251,7 @@ void ShowController::State::start_cue(Time now, std::vector<double> levels) {
 void ShowController::State::go_to_asked(Time now, std::vector<double> present) {
   cue = estimator.within_limits(asked, now);
   std::vector<double> sent = *cue;
-  leave_out_lost(sent);
+  lost.put_in(sent, safe_levels());
   for (std::size_t f = 0; f < sent.size(); ++f)
     if (bypassed.lamp(f)) sent[f] = (*cue)[f] = 0;
   if (!start_lamps(now, present, sent)) fade(now, std::move(present), sent, rig.control.fade_s, rig.control.fade_curve);

@@ -140,7 +140,7 @@ void ShowController::State::correct_or_hold(Time now, Correction correction) {
     // A lamp that limits dimmed for a lost lamp comes back with it.
     const bool same = std::abs(correction.level[i] - program.to_level[i]) <= kSmallestChange;
     (*cue)[i] = correction.level[i];
-    if (!same || !any_lost()) asked[i] = correction.level[i];
+    if (!same || !lost.any()) asked[i] = correction.level[i];
   }
   if (hands.all().empty() && !bypassed.any_lamp()) hands.correct(asked);
   ++round;

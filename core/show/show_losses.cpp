@@ -32,10 +32,6 @@ std::string some_of(const std::vector<std::string>& names) {
 
 }  // namespace
 
-bool ShowController::State::any_lost() const {
-  return std::any_of(lost.begin(), lost.end(), [](const auto& one) { return one.has_value(); });
-}
-
 bool ShowController::State::too_much_lost() const {
   return rig.safe.scope == SafeScope::rest_stays ? health.all_lost() : health.light_lost();
 }
@@ -55,33 +51,13 @@ bool ShowController::State::limits_bear_waiting(Time now) const {
 
 /// Single losses are not tracked when the rig goes to its safe look as a whole, except those of bypassed fixtures.
 void ShowController::State::watch_losses(Time now) {
-  bool changed = false;
-  std::vector<double> present, before;
-  for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
-    const bool apart = rig.safe.scope == SafeScope::rest_stays || bypassed.lamp(f);
-    const bool lamp = health.lamp_lost(f), gone = apart && (lamp || health.motion_lost(f));
-    std::optional<LostFixture>& one = lost[f];
-    if (gone && !one) {
-      if (present.empty()) {
-        present = present_levels(now);
-        before = present_levels(now - kNoticedWithin);
-      }
-      one = LostFixture{now, present[f], std::max({present[f], before[f], taken_level[f]}), lamp, false, {}};
-      changed = true;
-    } else if (gone) {
-      one->well_since.reset();
-      changed = changed || (lamp && !one->lamp);
-      one->lamp = one->lamp || lamp;
-      if (!one->to_safe && now - one->since >= from_seconds(rig.safe.hold_s)) one->to_safe = changed = true;
-    } else if (one && !one->well_since) {
-      one->well_since = now;
-    } else if (one && now - *one->well_since >= kHealthyFor) {
-      one.reset();
-      changed = true;
-    }
-  }
+  std::vector<std::uint8_t> apart(rig.fixtures.size());
+  for (std::size_t f = 0; f < apart.size(); ++f)
+    apart[f] = rig.safe.scope == SafeScope::rest_stays || bypassed.lamp(f) ? 1 : 0;
+  const auto levels = [&] { return LostFixtures::Levels{present_levels(now), present_levels(now - kNoticedWithin)}; };
+  bool changed = lost.step(now, health, apart, levels, from_seconds(rig.safe.hold_s));
   const std::vector<std::uint8_t> seen = watched_meters();
-  if (any_lost()) changed = changed || seen != watched;
+  if (lost.any()) changed = changed || seen != watched;
   if (!changed) return;
   watched = seen;
   tell_lost_lamps();
@@ -120,15 +96,6 @@ void ShowController::State::tell_lost_lamps() {
   ++facts;
 }
 
-/// Puts in the levels sent to lost fixtures: held at first, then their safe level unless they were darker. They may
-/// take it at any instant, so limits count on the level before.
-void ShowController::State::leave_out_lost(std::vector<double>& levels) const {
-  if (!any_lost()) return;
-  const std::vector<double> safe = safe_levels();
-  for (std::size_t f = 0; f < levels.size(); ++f)
-    if (lost[f]) levels[f] = lost[f]->to_safe ? std::min(safe[f], lost[f]->level) : lost[f]->level;
-}
-
 bool ShowController::State::in_doubt(std::size_t luxmeter) const {
   std::vector<std::uint8_t> chosen(rig.fixtures.size(), 0);
   bool any = false;
@@ -145,7 +112,7 @@ void ShowController::State::tell_losses(ShowStatus& status) const {
   for (const std::size_t p : estimator.beyond_dimming()) limited.push_back(rig.points[p].name);
   if (limited.empty()) return;
   Time since = Time::max();
-  for (std::size_t f = 0; f < lost.size(); ++f) {
+  for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
     if (!lost[f] || !lost[f]->lamp || !may_brighten(rig.fixtures[f])) continue;
     lamps.push_back(rig.fixtures[f].name);
     since = std::min(since, lost[f]->since);

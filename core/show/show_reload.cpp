@@ -32,7 +32,7 @@ void ShowController::State::exchange_rig(Time now, const Rig& other, const Light
     readings.disbelieve_all();
     model_joints = program.joints;
   }
-  if (rig.safe.scope == SafeScope::all) lost.assign(rig.fixtures.size(), std::nullopt);
+  if (rig.safe.scope == SafeScope::all) lost.forget_all();
   tell_estimator();
   in_force = present;  // limits let it pass until the next look is on
   fade(now, present, present, 0, FadeCurve::linear);

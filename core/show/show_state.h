@@ -16,6 +16,7 @@
 #include "core/show/head_guard.h"
 #include "core/show/health_watch.h"
 #include "core/show/identify.h"
+#include "core/show/lost_fixtures.h"
 #include "core/show/meter_readings.h"
 #include "core/show/scale_watch.h"
 #include "core/show/show_controller.h"
@@ -35,19 +36,6 @@ struct LimitBreach {
   double worst_case_lx = 0;
   Time since{};
 };
-
-/// A fixture whose lamp or axes do not answer, while the rest goes on.
-struct LostFixture {
-  Time since{};
-  double level = 0;      ///< it is held at this
-  double most = 0;       ///< highest that it may have taken last
-  bool lamp = true;      ///< false: only its motion is lost
-  bool to_safe = false;  ///< held for long enough
-  std::optional<Time> well_since{};
-};
-
-/// A device is back only after this long without a fault; drivers report several times within it.
-inline constexpr Duration kHealthyFor = std::chrono::milliseconds(500);
 
 /// One late answer is no failure: a device that is reported as faulted is lost after this. Limits are checked first
 /// (limits_bear_waiting).
@@ -101,7 +89,7 @@ struct ShowController::State {
   std::string failure;      ///< cause of the freeze, for the detail line
   std::optional<std::vector<double>> cue;        ///< levels in force, as corrected so far
   std::vector<double> asked;                     ///< levels in force before limits dimmed them, as corrected so far
-  std::vector<std::optional<LostFixture>> lost;  ///< per fixture
+  LostFixtures lost;
   std::vector<std::uint8_t> watched;             ///< per luxmeter, 1: watches its limit, as the estimator knows
   struct Awaited {
     Look look;
@@ -116,7 +104,6 @@ struct ShowController::State {
   bool converged = false;
   Time corrected_at{};                              ///< when the last correction was decided
   int drifted = 0;                                  ///< samples in a row, while holding, that ask for a correction
-  std::vector<double> taken_level;                  ///< per fixture: last level that its device took, as far as known
   std::vector<double> aimed_lx;                     ///< per point: reachable by the last correction; empty before
   std::vector<std::string> why;                     ///< per point: why its goal is not met; empty before the first
   std::vector<LimitBreach> breaches;
@@ -210,8 +197,6 @@ struct ShowController::State {
   /// No limit would be exceeded if any lamps were stuck at their recent maximum while the others go on.
   [[nodiscard]] bool limits_bear_waiting(Time now) const;
   void tell_lost_lamps();
-  void leave_out_lost(std::vector<double>& levels) const;
-  [[nodiscard]] bool any_lost() const;
   [[nodiscard]] bool too_much_lost() const;  ///< so much light is lost that the show stops
   [[nodiscard]] std::vector<std::uint8_t> watched_meters() const;
   /// Fixtures that do not answer may light it, by an unknown amount.
@@ -247,7 +232,6 @@ struct ShowController::State {
   [[nodiscard]] std::vector<double> levels_out(Time now) const;
   void judge_goal(std::size_t point, std::span<const double> level, PointStatus& status) const;
   void judge_limit(std::size_t point, std::span<const double> level, Time now, PointStatus& status) const;
-  /// Remembers the levels of lamps whose devices answer.
   void remember_levels(Time now);
   [[nodiscard]] std::string detail(Time now, const VerdictCounts& goals) const;
   [[nodiscard]] std::string who_shares(Time now) const;

@@ -91,8 +91,8 @@ std::string ShowController::State::detail(Time now, const VerdictCounts& goals) 
     case Phase::holding: {
       text = text_of(goals);
       if (health.any_meter_lost()) text += "; lost luxmeters correct nothing";
-      if (const auto count = std::count_if(lost.begin(), lost.end(), [](const auto& one) { return one.has_value(); }))
-        text += fmt::format("; {} of {} fixtures are lost, the rest goes on", count, lost.size());
+      if (lost.any())
+        text += fmt::format("; {} of {} fixtures are lost, the rest goes on", lost.count(), rig.fixtures.size());
       break;
     }
     case Phase::frozen:

@@ -39,10 +39,9 @@ const char* why_not_the_plan(Phase phase, bool blackout) {
 void ShowController::State::remember_levels(Time now) {
   std::vector<double> level(rig.fixtures.size());
   program.levels_at(now, level);
-  for (std::size_t f = 0; f < level.size(); ++f)
-    if (!health.lamp_silent(f)) taken_level[f] = level[f];
+  lost.remember_levels(health, level);
   for (const std::optional<LuxReading>& reading : readings.heard())
-    if (reading) estimator.shows(*reading, taken_level);
+    if (reading) estimator.shows(*reading, lost.taken_level());
 }
 
 std::vector<double> ShowController::State::levels_out(Time now) const {
@@ -52,7 +51,7 @@ std::vector<double> ShowController::State::levels_out(Time now) const {
     for (std::size_t i = 0; desk.silent && i < desk.fixtures.size(); ++i)
       if (desk.desk_has[i] != 0) level[desk.fixtures[i]] = desk.desk_level[i];
   for (std::size_t f = 0; f < level.size(); ++f)
-    if (health.lamp_silent(f)) level[f] = taken_level[f];
+    if (health.lamp_silent(f)) level[f] = lost.taken_level()[f];
   return level;
 }
 
