@@ -5,8 +5,6 @@
 namespace luxrig {
 namespace {
 
-constexpr Time at(int seconds) { return Time(std::chrono::seconds(seconds)); }
-
 /// Two lamps and two points, with nothing set.
 class HandSettingsTest : public ::testing::Test {
  protected:
@@ -22,8 +20,10 @@ class HandSettingsTest : public ::testing::Test {
   static ByHand goal(std::size_t point, double lux) { return {ByHand::What::goal, point, lux}; }
   void set(const ByHand& one) { hands.set(rig, std::span(&one, 1)); }
   bool take_plan(const std::vector<double>& levels, const Look& look = {}) {
-    return hands.take_plan(at(0), levels, look, std::vector<double>{1, 0.7});
+    return hands.take_plan(Time{}, levels, look, std::vector<double>{1, 0.7});
   }
+
+  static constexpr Time kEnd{std::chrono::seconds(10)};
 
   Rig rig = small_rig();
   HandSettings hands{rig};
@@ -41,12 +41,12 @@ TEST_F(HandSettingsTest, ReleaseCountsOnlyThoseThatWereSet) {
 
 TEST_F(HandSettingsTest, ASettingIsOverAtItsTimeAndNotBefore) {
   ByHand timed = level(0, 0.5);
-  timed.until = at(10);
+  timed.until = kEnd;
   set(timed);
   set(goal(1, 80));
-  EXPECT_TRUE(hands.over(at(9)).empty());
-  EXPECT_EQ(hands.over(at(10)).fixtures, (std::vector<std::size_t>{0}));
-  EXPECT_TRUE(hands.over(at(10)).points.empty()) << "a setting without an end stays";
+  EXPECT_TRUE(hands.over(kEnd - std::chrono::milliseconds(1)).empty());
+  EXPECT_EQ(hands.over(kEnd).fixtures, (std::vector<std::size_t>{0}));
+  EXPECT_TRUE(hands.over(kEnd).points.empty()) << "a setting without an end stays";
 }
 
 TEST_F(HandSettingsTest, APlanEndsOnlySettingsOfThePlanBefore) {
