@@ -1,5 +1,5 @@
 /// Art-Net decoders: no packet may crash them, none yields a port address that does not exist, and an accepted ArtDmx
-/// encodes to the same bytes (but for a protocol version above 14).
+/// encodes to no more bytes, with the same fields.
 #include <cstdlib>
 
 #include "drivers/dmx/artnet/artnet_codec.h"
@@ -15,7 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (const auto dmx = decode_dmx({data, size})) {
     const auto bytes = encode(*dmx);
     const auto again = decode_dmx(bytes);
-    if (bytes.size() != size || !again || again->slots != dmx->slots || again->port_address != dmx->port_address) {
+    if (bytes.size() > size || !again || again->slots != dmx->slots || again->port_address != dmx->port_address) {
       std::abort();
     }
   }

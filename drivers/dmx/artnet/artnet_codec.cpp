@@ -78,6 +78,12 @@ bool has_header(std::span<const std::uint8_t> bytes, std::uint16_t op_code) {
          (bytes[kOpCode] | bytes[kOpCode + 1] << 8) == op_code;
 }
 
+/// As has_header, and of a protocol that is spoken here. ArtPollReply has no version.
+bool has_versioned_header(std::span<const std::uint8_t> bytes, std::uint16_t op_code) {
+  return bytes.size() >= kProtocol + 2 && has_header(bytes, op_code) &&
+         (bytes[kProtocol] << 8 | bytes[kProtocol + 1]) >= kProtocolVersion;
+}
+
 std::string text_in(std::span<const std::uint8_t> field) {
   std::string text(field.begin(), std::find(field.begin(), field.end(), 0));
   for (char& letter : text) {  // these go into health reports: no control characters
@@ -109,16 +115,16 @@ std::vector<std::uint8_t> encode(const Dmx& packet) {
 }
 
 std::optional<Dmx> decode_dmx(std::span<const std::uint8_t> bytes) {
-  if (bytes.size() < kData || !has_header(bytes, kOpDmx)) return std::nullopt;
+  if (bytes.size() < kData || !has_versioned_header(bytes, kOpDmx)) return std::nullopt;
   const std::size_t length = static_cast<std::size_t>(bytes[kLength]) << 8 | bytes[kLength + 1];
-  if (bytes[kProtocol] != 0 || bytes[kProtocol + 1] < kProtocolVersion || (bytes[kNet] & 0x80) != 0)
-    return std::nullopt;
-  if (length < 2 || length > kMaxSlots || length % 2 != 0 || bytes.size() != kData + length) return std::nullopt;
+  if (bytes[kNet] > 0x7F || length < 2 || length > kMaxSlots || length % 2 != 0) return std::nullopt;
+  if (bytes.size() < kData + length) return std::nullopt;
   Dmx packet;
   packet.sequence = bytes[kSequence];
   packet.physical = bytes[kPhysical];
   packet.port_address = bytes[kNet] << 8 | bytes[kSubUni];
-  packet.slots.assign(bytes.begin() + kData, bytes.end());
+  const auto slots = bytes.subspan(kData, length);
+  packet.slots.assign(slots.begin(), slots.end());
   return packet;
 }
 
@@ -129,8 +135,7 @@ std::vector<std::uint8_t> encode_poll() {
 }
 
 std::optional<Poll> decode_poll(std::span<const std::uint8_t> bytes) {
-  if (bytes.size() < kPollSize || !has_header(bytes, kOpPoll)) return std::nullopt;
-  if (bytes[kProtocol] != 0 || bytes[kProtocol + 1] < kProtocolVersion) return std::nullopt;
+  if (bytes.size() < kPollSize || !has_versioned_header(bytes, kOpPoll)) return std::nullopt;
   Poll poll;
   poll.reply_on_change = (bytes[kPollFlags] & kReplyOnChange) != 0;
   if ((bytes[kPollFlags] & kTargeted) != 0 && bytes.size() >= kTargetedPollSize) {
@@ -143,8 +148,7 @@ std::optional<Poll> decode_poll(std::span<const std::uint8_t> bytes) {
 std::vector<std::uint8_t> encode_sync() { return header(kSyncPacketSize, kOpSync); }
 
 bool is_sync(std::span<const std::uint8_t> bytes) {
-  return bytes.size() >= kSyncPacketSize && has_header(bytes, kOpSync) && bytes[kProtocol] == 0 &&
-         bytes[kProtocol + 1] >= kProtocolVersion;
+  return bytes.size() >= kSyncPacketSize && has_versioned_header(bytes, kOpSync);
 }
 
 std::vector<std::uint8_t> encode(const Address& packet) {
@@ -161,8 +165,7 @@ std::vector<std::uint8_t> encode(const Address& packet) {
 }
 
 std::optional<Address> decode_address(std::span<const std::uint8_t> bytes) {
-  if (bytes.size() < kAddressSize || !has_header(bytes, kOpAddress)) return std::nullopt;
-  if (bytes[kProtocol] != 0 || bytes[kProtocol + 1] < kProtocolVersion) return std::nullopt;
+  if (bytes.size() < kAddressSize || !has_versioned_header(bytes, kOpAddress)) return std::nullopt;
   Address packet;
   packet.bind_index = bytes[kAddressBind];
   const int command = bytes[kAddressCommand];

@@ -25,6 +25,7 @@ struct Dmx {
   std::vector<std::uint8_t> slots;  ///< an even number, 2…512
 };
 [[nodiscard]] std::vector<std::uint8_t> encode(const Dmx& packet);
+/// Bytes after the slots are ignored.
 [[nodiscard]] std::optional<Dmx> decode_dmx(std::span<const std::uint8_t> bytes);
 
 /// Asks every node that receives it for an ArtPollReply, now and on each change of its state.

@@ -112,12 +112,10 @@ Cid cid_in(std::span<const std::uint8_t> in) {
   return cid;
 }
 
-/// Empty without its NUL.
-std::optional<std::string> name_in(std::span<const std::uint8_t> in) {
+/// The whole field if a sender left out its NUL.
+std::string name_in(std::span<const std::uint8_t> in) {
   const auto field = in.subspan(kSourceName, kSourceNameBytes);
-  std::string name(field.begin(), std::find(field.begin(), field.end(), 0));
-  if (name.size() == kSourceNameBytes) return std::nullopt;
-  return name;
+  return {field.begin(), std::find(field.begin(), field.end(), 0)};
 }
 
 }  // namespace
@@ -155,9 +153,7 @@ std::optional<DataPacket> decode(std::span<const std::uint8_t> bytes) {
 
   DataPacket packet;
   packet.cid = cid_in(bytes);
-  auto name = name_in(bytes);
-  if (!name) return std::nullopt;
-  packet.source_name = std::move(*name);
+  packet.source_name = name_in(bytes);
   packet.priority = bytes[kPriority];
   packet.sync_universe = get16(bytes, kSyncUniverse);
   packet.sequence = bytes[kSequence];
@@ -208,9 +204,7 @@ std::optional<DiscoveryPacket> decode_discovery(std::span<const std::uint8_t> by
       get32(bytes, kListVector) != kVectorUniverseList || bytes[kPage] > bytes[kLastPage]) {
     return std::nullopt;
   }
-  auto name = name_in(bytes);
-  if (!name) return std::nullopt;
-  DiscoveryPacket packet{cid_in(bytes), std::move(*name), bytes[kPage], bytes[kLastPage], {}};
+  DiscoveryPacket packet{cid_in(bytes), name_in(bytes), bytes[kPage], bytes[kLastPage], {}};
   for (std::size_t at = kList; at < bytes.size(); at += 2) {
     const std::uint16_t universe = get16(bytes, at);
     if (!packet.universes.empty() && universe <= packet.universes.back()) return std::nullopt;  // 8.5: sorted

@@ -25,7 +25,7 @@ using Cid = std::array<std::uint8_t, 16>;  ///< component identifier: a UUID, cl
 
 struct DataPacket {
   Cid cid{};
-  std::string source_name;  ///< UTF-8; truncated to 63 bytes at a character
+  std::string source_name;  ///< UTF-8; encode() truncates it to 63 bytes at a character
   std::uint8_t priority = 100;
   std::uint16_t sync_universe = 0;
   std::uint8_t sequence = 0;
@@ -56,7 +56,7 @@ struct SyncPacket {
 /// Clause 8: universes that a source sends, 512 to a page.
 struct DiscoveryPacket {
   Cid cid{};
-  std::string source_name;  ///< UTF-8; truncated to 63 bytes at a character
+  std::string source_name;  ///< as in DataPacket
   std::uint8_t page = 0, last_page = 0;
   std::vector<std::uint16_t> universes;  ///< ascending, each once, at most 512
 };

@@ -74,7 +74,9 @@ std::optional<SacnSync> decode_sacn_sync(Bytes packet) {
   if (packet.size() != 49 || !root_layer_fits(packet, 0x00000008)) return std::nullopt;  // VECTOR_ROOT_E131_EXTENDED
   // §6.3: VECTOR_E131_EXTENDED_SYNCHRONIZATION.
   if (!flags_and_length_fit(packet, 38) || big_endian_32(packet, 40) != 0x00000001) return std::nullopt;
-  return SacnSync{copied<16>(packet, 22), packet[44], big_endian_16(packet, 45)};
+  const int universe = big_endian_16(packet, 45);
+  if (universe < 1 || universe > 63999) return std::nullopt;  // §6.3.3: a universe that data can name
+  return SacnSync{copied<16>(packet, 22), packet[44], universe};
 }
 
 SacnReceiver::Verdict SacnReceiver::receive(Time now, Bytes packet) {
