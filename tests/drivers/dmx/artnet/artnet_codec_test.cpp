@@ -44,6 +44,21 @@ TEST(ArtnetCodec, ReadsBackWhatItWrites) {
   EXPECT_EQ(back->slots, packet.slots);
 }
 
+TEST(ArtnetCodec, IgnoresBytesAfterTheSlotsAndTakesLaterVersions) {
+  Bytes bytes = encode(Dmx{9, 0, 0x1234, {1, 2, 3, 4}});
+  bytes.push_back(99);
+  bytes[10] = 1;  // version 270
+  const auto packet = decode_dmx(bytes);
+  ASSERT_TRUE(packet);
+  EXPECT_EQ(packet->slots, (Bytes{1, 2, 3, 4}));
+  bytes[10] = 0;
+  bytes[11] = 13;
+  EXPECT_FALSE(decode_dmx(bytes)) << "an earlier version";
+  bytes[11] = 14;
+  bytes.resize(21);
+  EXPECT_FALSE(decode_dmx(bytes)) << "a slot is missing";
+}
+
 TEST(ArtnetCodec, ReadsWhichUniversesANodePutsOut) {
   const auto reply = decode_poll_reply(reply_bytes());
   ASSERT_TRUE(reply);

@@ -67,6 +67,14 @@ TEST(SacnCodec, CutsALongNameAtACharacterAndEndsItWithNul) {
   EXPECT_EQ(bytes[44 + 63], 0);
 }
 
+TEST(SacnCodec, HearsASourceThatFillsTheWholeNameField) {
+  Bytes bytes = encode(full_packet());
+  std::fill_n(bytes.begin() + 44, 64, 'x');
+  const auto packet = decode(bytes);
+  ASSERT_TRUE(packet);
+  EXPECT_EQ(packet->source_name, std::string(64, 'x'));
+}
+
 TEST(SacnCodec, ReadsBackWhatItWrites) {
   DataPacket packet = full_packet();
   packet.universe = 63999;
