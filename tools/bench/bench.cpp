@@ -5,8 +5,10 @@
 #include <cstdio>
 #include <fstream>
 
+#include "tools/bench/report.h"
 #include "tools/bench/row_progress.h"
 #include "tools/bench/suites.h"
+#include "tools/process/files.h"
 
 namespace luxrig {
 namespace {
@@ -26,6 +28,39 @@ constexpr Suite kSuites[] = {
     {"faults", "faults of every bus by the hundred: what the light did, when it was said and over", bench_faults},
 };
 
+/// Prints the rows again.
+std::string command_of(const Suite& suite, const BenchOptions& options) {
+  const BenchOptions usual;
+  std::string text = fmt::format("luxrig bench {}", suite.name);
+  if (options.quick) text += " --quick";
+  if (!options.only.empty()) text += " --only " + options.only;
+  if (!options.method.empty()) text += " --method " + options.method;
+  if (options.reference_error != usual.reference_error)
+    text += fmt::format(" --reference-error {:g}", options.reference_error);
+  for (const auto& rig : options.rigs) text += " --rig " + rig.string();
+  if (options.seeds) text += fmt::format(" --seeds {}", *options.seeds);
+  if (options.first_seed != usual.first_seed) text += fmt::format(" --first-seed {}", options.first_seed);
+  if (!options.bounds) text += " --no-bounds";
+  if (options.seconds) text += fmt::format(" --seconds {:g}", *options.seconds);
+  if (options.threads != usual.threads) text += fmt::format(" --threads {}", options.threads);
+  if (!options.data_folder.empty()) text += " --data DIR";
+  return text;
+}
+
+std::optional<std::string> report(const Suite& suite, const std::vector<BenchRow>& rows, const BenchOptions& options) {
+  const auto& file = options.report_file;
+  std::string before;
+  if (std::error_code error; std::filesystem::exists(file, error)) {
+    const auto text = read_file(file);
+    if (!text) return text.error().front().text();
+    before = *text;
+  }
+  const auto written = write_file(file, with_rows(before, suite.name, command_of(suite, options), rows, provenance()));
+  if (!written)
+    return fmt::format("{}:0:0: {}: name a file in a folder that exists", file.string(), written.error().detail);
+  return std::nullopt;
+}
+
 int finish(const Suite& suite, const std::vector<BenchRow>& rows, const BenchOptions& options) {
   end_row_progress();
   fmt::print("{}", table_of(rows));
@@ -38,6 +73,12 @@ int finish(const Suite& suite, const std::vector<BenchRow>& rows, const BenchOpt
     out.close();
     if (!out) {
       fmt::print(stderr, "{}:0:0: cannot be written: name a file in a folder that exists\n", options.csv_file.string());
+      code = 1;
+    }
+  }
+  if (!options.report_file.empty()) {
+    if (const auto trouble = report(suite, rows, options)) {
+      fmt::print(stderr, "{}\n", *trouble);
       code = 1;
     }
   }

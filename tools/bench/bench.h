@@ -11,6 +11,7 @@ namespace luxrig {
 struct BenchOptions {
   bool quick = false;                         ///< fewer and coarser runs, same columns, under a minute
   std::filesystem::path csv_file, plot_file;  ///< written unless empty
+  std::filesystem::path report_file;          ///< Markdown that gets the rows (report.h), unless empty
   int threads = 0;                            ///< 0 = one per core
   std::filesystem::path references_folder;    ///< transport: converged references are kept here, by scene
   double reference_error = 0.0005;            ///< transport: standard error of converged references

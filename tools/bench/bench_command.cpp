@@ -21,6 +21,8 @@ Action declare_bench(CLI::App& command) {
   command.add_flag("--quick", bench.quick, "under a minute, same columns");
   command.add_option("--csv", bench.csv_file, "write the rows here")->check(offers_files());
   command.add_option("--plot", bench.plot_file, "draw error over time here (PNG)")->check(offers_files());
+  command.add_option("--report", bench.report_file, "put the rows into this Markdown file, with commit, machine, date")
+      ->check(offers_files());
   command.add_option("--threads", bench.threads, "threads (0: one per core)")->check(CLI::Range(0, 1024));
   command.add_option("--references", bench.references_folder, "transport: keep converged references in this folder")
       ->check(offers_folders());
