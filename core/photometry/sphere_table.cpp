@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/check.h"
-#include "core/photometry/arc_tangent.h"
+#include "core/photometry/shapes/arc_tangent.h"
 
 namespace luxrig {
 namespace {

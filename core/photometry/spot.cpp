@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "core/check.h"
-#include "core/photometry/arc_tangent.h"
-#include "core/photometry/gauss8.h"
 #include "core/photometry/intensity.h"
+#include "core/photometry/shapes/arc_tangent.h"
+#include "core/photometry/shapes/gauss8.h"
 #include "core/photometry/sphere_table.h"
 
 namespace luxrig {

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "core/photometry/files/lamp_tilt.h"
 #include "core/photometry/intensity.h"
-#include "core/photometry/lamp_tilt.h"
-#include "core/photometry/luminous_shape.h"
+#include "core/photometry/shapes/luminous_shape.h"
 #include "core/rig/frames.h"
 #include "core/rig/patch.h"
 

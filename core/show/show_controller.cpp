@@ -6,7 +6,7 @@
 #include "core/check.h"
 #include "core/output/head_travel.h"
 #include "core/rig/register_map/register_map.h"
-#include "core/show/show_state.h"
+#include "core/show/controller/show_state.h"
 
 namespace luxrig {
 

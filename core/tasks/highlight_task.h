@@ -2,8 +2,8 @@
 /// One highlight task: places new lights where the mounting allows (core/highlight/lights/judged_lights.h), then aims
 /// and dims them like heads that already hang (aim_heads.h).
 
-#include "core/solve/placement/mounting.h"
-#include "core/solve/placement/place_in_scene.h"
+#include "core/solve/placement/scene/mounting.h"
+#include "core/solve/placement/scene/place_in_scene.h"
 #include "core/tasks/relief_task.h"
 
 namespace luxrig {

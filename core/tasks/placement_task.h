@@ -2,8 +2,8 @@
 /// One placement task, watched: a timeout or an interrupt ends it with the best so far, and a person sees its progress.
 
 #include "core/rig/rig.h"
-#include "core/solve/placement/mounting.h"
-#include "core/solve/placement/place_in_scene.h"
+#include "core/solve/placement/scene/mounting.h"
+#include "core/solve/placement/scene/place_in_scene.h"
 #include "core/tasks/session.h"
 
 namespace luxrig {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "core/check.h"
-#include "core/photometry/sky.h"
+#include "core/photometry/sky/sky.h"
 #include "core/rig/zoom.h"
 
 namespace luxrig {

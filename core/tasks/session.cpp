@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "core/solve/placement/mounting.h"
+#include "core/solve/placement/scene/mounting.h"
 #include "core/tasks/rig_notes/rig_notes.h"
 #include "core/tasks/rig_transport.h"
 #include "core/tasks/scene_builder.h"

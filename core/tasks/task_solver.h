@@ -6,7 +6,7 @@
 
 #include "core/output/keep_out.h"
 #include "core/solve/emittance.h"
-#include "core/solve/placement/place_in_scene.h"
+#include "core/solve/placement/scene/place_in_scene.h"
 #include "core/tasks/relief_task.h"
 #include "core/tasks/solve_tasks.h"
 

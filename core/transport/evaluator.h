@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "core/photometry/intensity.h"
-#include "core/photometry/luminous_shape.h"
-#include "core/photometry/sky_luminance.h"
+#include "core/photometry/shapes/luminous_shape.h"
+#include "core/photometry/sky/sky_luminance.h"
 #include "core/result.h"
 #include "core/run.h"
 #include "core/scene/ray_scene.h"

@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "core/photometry/eulumdat.h"
+#include "core/photometry/files/eulumdat.h"
 #include "tests/fuzz/photometry_properties.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

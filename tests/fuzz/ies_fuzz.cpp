@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/photometry/ies.h"
+#include "core/photometry/files/ies.h"
 #include "tests/fuzz/photometry_properties.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-#include "core/photometry/file_text.h"
+#include "core/photometry/files/file_text.h"
 #include "core/rig/luminaire_file/choices.h"
 #include "core/rig/luminaire_file/tm33_file.h"
 #include "core/rig/luminaire_file/xml_child.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/photometry/photometric_file.h"
+#include "core/photometry/files/photometric_file.h"
 
 namespace luxrig {
 

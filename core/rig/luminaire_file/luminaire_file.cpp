@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "core/photometry/file_text.h"
+#include "core/photometry/files/file_text.h"
 #include "core/rig/luminaire_file/tm33_file.h"
 #include "core/rig/luminaire_file/xml_child.h"
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <tuple>
 
-#include "core/photometry/file_text.h"
-#include "core/photometry/ies_angles.h"
+#include "core/photometry/files/file_text.h"
+#include "core/photometry/files/ies_angles.h"
 #include "core/rig/luminaire_file/choices.h"
 #include "core/rig/luminaire_file/xml_child.h"
 

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/photometry/file_text.h"
+#include "core/photometry/files/file_text.h"
 #include "core/rig/personality/xml_file.h"
 #include "core/text/plain_text.h"
 

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <tl/expected.hpp>
 
-#include "core/photometry/sun_position.h"
+#include "core/photometry/sky/sun_position.h"
 
 namespace luxrig {
 

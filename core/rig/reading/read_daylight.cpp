@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 
-#include "core/photometry/daylight_availability.h"
-#include "core/photometry/sky.h"
-#include "core/photometry/sun_position.h"
+#include "core/photometry/sky/daylight_availability.h"
+#include "core/photometry/sky/sky.h"
+#include "core/photometry/sky/sun_position.h"
 #include "core/rig/reading/moment.h"
 #include "core/rig/reading/rig_reader.h"
 

@@ -3,8 +3,8 @@
 
 #include <optional>
 
-#include "core/solve/placement/correct_lights.h"
 #include "core/solve/placement/methods/placement_method.h"
+#include "core/solve/placement/search/correct_lights.h"
 
 namespace luxrig {
 

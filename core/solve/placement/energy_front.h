@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "core/solve/placement/exchange_lights.h"
+#include "core/solve/placement/search/exchange_lights.h"
 
 namespace luxrig {
 

@@ -9,7 +9,7 @@
 #include <functional>
 #include <optional>
 
-#include "core/solve/placement/exchange_lights.h"
+#include "core/solve/placement/search/exchange_lights.h"
 
 namespace luxrig {
 

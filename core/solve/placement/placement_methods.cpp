@@ -3,10 +3,10 @@
 #include <algorithm>
 
 #include "core/parallel.h"
-#include "core/solve/placement/choose_lights.h"
 #include "core/solve/placement/methods/anneal_candidates.h"
 #include "core/solve/placement/methods/baselines.h"
 #include "core/solve/placement/place_lights.h"
+#include "core/solve/placement/search/choose_lights.h"
 
 namespace luxrig {
 namespace {

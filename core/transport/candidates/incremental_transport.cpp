@@ -6,7 +6,7 @@
 #include <atomic>
 
 #include "core/parallel.h"
-#include "core/transport/candidates/indirect_plan.h"
+#include "core/transport/candidates/reflected/indirect_plan.h"
 #include "core/transport/direct/lamps.h"
 
 namespace luxrig {

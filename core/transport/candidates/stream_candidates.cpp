@@ -8,8 +8,8 @@
 #include "core/parallel.h"
 #include "core/transport/candidates/air_regions.h"
 #include "core/transport/candidates/error_histogram.h"
-#include "core/transport/candidates/indirect_plan.h"
-#include "core/transport/candidates/reflected_columns.h"
+#include "core/transport/candidates/reflected/indirect_plan.h"
+#include "core/transport/candidates/reflected/reflected_columns.h"
 #include "core/transport/direct/lamps.h"
 
 namespace luxrig {

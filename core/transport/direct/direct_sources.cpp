@@ -5,7 +5,7 @@
 #include <numeric>
 #include <tuple>
 
-#include "core/photometry/shape_sampling.h"
+#include "core/photometry/shapes/shape_sampling.h"
 #include "core/transport/direct/shape_light.h"
 #include "core/transport/paths/path_sampler.h"
 

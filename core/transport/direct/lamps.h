@@ -12,7 +12,7 @@
 #include <span>
 #include <vector>
 
-#include "core/photometry/shape_sampling.h"
+#include "core/photometry/shapes/shape_sampling.h"
 #include "core/transport/direct/lamp_cells.h"
 #include "core/transport/evaluator.h"
 #include "core/transport/sky/sky_openings.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/photometry/shape_sampling.h"
+#include "core/photometry/shapes/shape_sampling.h"
 #include "core/transport/direct/cubature.h"
 #include "core/transport/direct/shape_patches.h"
 

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "core/photometry/luminous_shape.h"
+#include "core/photometry/shapes/luminous_shape.h"
 
 namespace luxrig {
 

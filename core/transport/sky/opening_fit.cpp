@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/photometry/shape_sampling.h"
+#include "core/photometry/shapes/shape_sampling.h"
 
 namespace luxrig {
 namespace {

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/photometry/shape_sampling.h"
+#include "core/photometry/shapes/shape_sampling.h"
 #include "core/transport/sobol.h"
 
 namespace luxrig {

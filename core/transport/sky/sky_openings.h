@@ -12,7 +12,7 @@
 #include <span>
 #include <vector>
 
-#include "core/photometry/sky_luminance.h"
+#include "core/photometry/sky/sky_luminance.h"
 
 namespace luxrig {
 

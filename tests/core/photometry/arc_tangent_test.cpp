@@ -1,4 +1,4 @@
-#include "core/photometry/arc_tangent.h"
+#include "core/photometry/shapes/arc_tangent.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "core/photometry/ies.h"
+#include "core/photometry/files/ies.h"
 #include "tests/core/photometry/load_files.h"
 #include "tests/folders.h"
 

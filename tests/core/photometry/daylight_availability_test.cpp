@@ -1,4 +1,4 @@
-#include "core/photometry/daylight_availability.h"
+#include "core/photometry/sky/daylight_availability.h"
 
 #include <gtest/gtest.h>
 

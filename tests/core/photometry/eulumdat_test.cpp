@@ -1,4 +1,4 @@
-#include "core/photometry/eulumdat.h"
+#include "core/photometry/files/eulumdat.h"
 
 #include <gtest/gtest.h>
 

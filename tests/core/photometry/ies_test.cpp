@@ -1,4 +1,4 @@
-#include "core/photometry/ies.h"
+#include "core/photometry/files/ies.h"
 
 #include <gtest/gtest.h>
 

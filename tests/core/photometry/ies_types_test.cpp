@@ -7,7 +7,7 @@
 #include <random>
 #include <sstream>
 
-#include "core/photometry/ies.h"
+#include "core/photometry/files/ies.h"
 #include "tests/core/photometry/load_files.h"
 
 namespace luxrig {

@@ -3,10 +3,10 @@
 
 #include <filesystem>
 
-#include "core/photometry/eulumdat.h"
-#include "core/photometry/file_text.h"
-#include "core/photometry/ies.h"
-#include "core/photometry/photometric_file.h"
+#include "core/photometry/files/eulumdat.h"
+#include "core/photometry/files/file_text.h"
+#include "core/photometry/files/ies.h"
+#include "core/photometry/files/photometric_file.h"
 
 namespace luxrig {
 

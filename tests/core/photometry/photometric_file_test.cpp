@@ -1,5 +1,5 @@
 // All real files of this repository: each loads with the flux its catalogue states, or is refused with a reason.
-#include "core/photometry/photometric_file.h"
+#include "core/photometry/files/photometric_file.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "core/photometry/photometric_file.h"
+#include "core/photometry/files/photometric_file.h"
 #include "tests/core/photometry/photometric_data.h"
 #include "tests/mutants.h"
 

@@ -9,7 +9,7 @@
 #include <random>
 #include <string>
 
-#include "core/photometry/ies.h"
+#include "core/photometry/files/ies.h"
 #include "core/photometry/intensity.h"
 #include "tests/core/photometry/load_files.h"
 #include "tests/folders.h"

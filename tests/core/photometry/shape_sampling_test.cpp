@@ -1,4 +1,4 @@
-#include "core/photometry/shape_sampling.h"
+#include "core/photometry/shapes/shape_sampling.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "core/photometry/sky.h"
+#include "core/photometry/sky/sky.h"
 
 #include <gtest/gtest.h>
 

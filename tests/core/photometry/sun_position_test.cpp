@@ -1,4 +1,4 @@
-#include "core/photometry/sun_position.h"
+#include "core/photometry/sky/sun_position.h"
 
 #include <gtest/gtest.h>
 

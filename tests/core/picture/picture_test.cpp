@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/photometry/sky.h"
+#include "core/photometry/sky/sky.h"
 #include "tests/core/picture/picture_fixture.h"
 #include "tests/core/transport/lamp_pose.h"
 #include "tools/bench/rooms/enclosures.h"

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "core/photometry/intensity.h"
-#include "core/photometry/luminous_shape.h"
+#include "core/photometry/shapes/luminous_shape.h"
 
 namespace luxrig {
 

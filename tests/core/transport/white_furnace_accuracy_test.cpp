@@ -2,7 +2,7 @@
 // reveals light lost or gained by the gloss model or along the way.
 #include <gtest/gtest.h>
 
-#include "core/photometry/sky.h"
+#include "core/photometry/sky/sky.h"
 #include "core/scene/ray_scene.h"
 #include "core/transport/bsdf.h"
 #include "core/transport/evaluator.h"

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <memory>
 
-#include "core/photometry/sky.h"
+#include "core/photometry/sky/sky.h"
 #include "tools/bench/analytic/case.h"
 #include "tools/bench/analytic/closed_forms.h"
 #include "tools/bench/analytic/rectangle_scene.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "core/photometry/ies.h"
+#include "core/photometry/files/ies.h"
 #include "tools/bench/analytic/case.h"
 #include "tools/bench/analytic/closed_forms.h"
 

@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/photometry/shape_sampling.h"
+#include "core/photometry/shapes/shape_sampling.h"
 
 namespace luxrig {
 namespace {

@@ -7,9 +7,9 @@
 #include <limits>
 #include <nanoflann.hpp>
 
-#include "core/solve/placement/complement_search.h"
-#include "core/solve/placement/lattice.h"
-#include "core/solve/placement/search_space.h"
+#include "core/solve/placement/scene/lattice.h"
+#include "core/solve/placement/scene/search_space.h"
+#include "core/solve/placement/search/complement_search.h"
 #include "tools/bench/row_progress.h"
 #include "tools/bench/suites.h"
 #include "tools/bench/transport/candidates.h"

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "core/solve/placement/mounted_light.h"
-#include "core/solve/placement/search_space.h"
+#include "core/solve/placement/scene/mounted_light.h"
+#include "core/solve/placement/scene/search_space.h"
 #include "tools/bench/measured.h"
 #include "tools/bench/methods/compared_methods.h"
 #include "tools/bench/placement_cases/placement_case.h"

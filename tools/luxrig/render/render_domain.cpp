@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "core/highlight/lights/domain_votes.h"
-#include "core/solve/placement/mounting.h"
+#include "core/solve/placement/scene/mounting.h"
 #include "tools/luxrig/render/render_show.h"
 #include "tools/terminal/command.h"
 #include "tools/terminal/picture_png.h"

@@ -1,7 +1,7 @@
 /// choose_lights: accuracy over many samples.
 #include <gtest/gtest.h>
 
-#include "core/solve/placement/choose_lights.h"
+#include "core/solve/placement/search/choose_lights.h"
 #include "tests/core/solve/placement/choose_lights_fixture.h"
 #include "tests/core/solve/placement/lit_hall.h"
 

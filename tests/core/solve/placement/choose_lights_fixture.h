@@ -1,7 +1,7 @@
 #pragma once
 /// Shared by the tests of choose_lights.
 
-#include "core/solve/placement/choose_lights.h"
+#include "core/solve/placement/search/choose_lights.h"
 
 namespace luxrig::choose_lights_fixture {
 

@@ -1,4 +1,4 @@
-#include "core/solve/placement/choose_lights.h"
+#include "core/solve/placement/search/choose_lights.h"
 
 #include <gtest/gtest.h>
 

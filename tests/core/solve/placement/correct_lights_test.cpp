@@ -1,11 +1,11 @@
-#include "core/solve/placement/correct_lights.h"
+#include "core/solve/placement/search/correct_lights.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/solve/placement/refine_lights.h"
+#include "core/solve/placement/search/refine_lights.h"
 #include "tests/core/solve/placement/lit_hall.h"
 
 namespace luxrig {

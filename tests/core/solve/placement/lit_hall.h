@@ -6,9 +6,9 @@
 #include <memory>
 #include <vector>
 
-#include "core/solve/placement/complement_search.h"
-#include "core/solve/placement/lattice.h"
-#include "core/solve/placement/scene_light.h"
+#include "core/solve/placement/scene/lattice.h"
+#include "core/solve/placement/scene/scene_light.h"
+#include "core/solve/placement/search/complement_search.h"
 #include "tools/bench/rooms/lit_room.h"
 
 namespace luxrig {

@@ -1,4 +1,4 @@
-#include "core/solve/placement/mounting.h"
+#include "core/solve/placement/scene/mounting.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "core/solve/placement/surface_lattice.h"
+#include "core/solve/placement/scene/surface_lattice.h"
 #include "tests/core/solve/placement/mounted_room.h"
 
 namespace luxrig {

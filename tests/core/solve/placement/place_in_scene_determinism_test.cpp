@@ -1,7 +1,7 @@
 /// place_in_scene: the same for any number of threads.
 #include <gtest/gtest.h>
 
-#include "core/solve/placement/place_in_scene.h"
+#include "core/solve/placement/scene/place_in_scene.h"
 #include "tests/core/solve/placement/place_in_scene_fixture.h"
 
 namespace luxrig {

@@ -1,7 +1,7 @@
 #pragma once
 /// Shared by the tests of place_in_scene.
 
-#include "core/solve/placement/place_in_scene.h"
+#include "core/solve/placement/scene/place_in_scene.h"
 #include "tests/core/solve/placement/mounted_room.h"
 
 namespace luxrig::place_in_scene_fixture {

@@ -1,4 +1,4 @@
-#include "core/solve/placement/place_in_scene.h"
+#include "core/solve/placement/scene/place_in_scene.h"
 
 #include <gtest/gtest.h>
 

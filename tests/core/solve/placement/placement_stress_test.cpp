@@ -5,8 +5,8 @@
 
 #include <limits>
 
-#include "core/solve/placement/choose_lights.h"
 #include "core/solve/placement/place_lights.h"
+#include "core/solve/placement/search/choose_lights.h"
 #include "tests/core/solve/placement/lit_hall.h"
 #include "tests/random.h"
 

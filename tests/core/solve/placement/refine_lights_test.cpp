@@ -1,4 +1,4 @@
-#include "core/solve/placement/refine_lights.h"
+#include "core/solve/placement/search/refine_lights.h"
 
 #include <gtest/gtest.h>
 

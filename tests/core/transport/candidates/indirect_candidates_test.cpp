@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/photometry/sky.h"
+#include "core/photometry/sky/sky.h"
 #include "core/transport/candidates/candidate_transport.h"
 #include "core/transport/candidates/incremental_transport.h"
 #include "tests/core/transport/candidates/box_rooms.h"

@@ -1,4 +1,4 @@
-#include "core/transport/candidates/interpolation_nodes.h"
+#include "core/transport/candidates/reflected/interpolation_nodes.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "core/transport/candidates/incremental_transport.h"
-#include "core/transport/candidates/reflected_field.h"
+#include "core/transport/candidates/reflected/reflected_field.h"
 #include "tests/core/transport/candidates/box_rooms.h"
 #include "tests/core/transport/candidates/reflected_field_fixture.h"
 #include "tests/random.h"

@@ -2,7 +2,7 @@
 /// Shared by the tests of reflected_field.
 
 #include "core/transport/candidates/incremental_transport.h"
-#include "core/transport/candidates/reflected_field.h"
+#include "core/transport/candidates/reflected/reflected_field.h"
 #include "tests/core/transport/candidates/box_rooms.h"
 
 namespace luxrig::reflected_field_fixture {

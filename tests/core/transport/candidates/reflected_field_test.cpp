@@ -1,4 +1,4 @@
-#include "core/transport/candidates/reflected_field.h"
+#include "core/transport/candidates/reflected/reflected_field.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "core/transport/candidates/surface_cells.h"
+#include "core/transport/candidates/reflected/surface_cells.h"
 
 #include <gtest/gtest.h>
 

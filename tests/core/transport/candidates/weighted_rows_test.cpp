@@ -1,11 +1,11 @@
-#include "core/transport/candidates/weighted_rows.h"
+#include "core/transport/candidates/reflected/weighted_rows.h"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "core/transport/candidates/direction_guide.h"
 #include "core/transport/candidates/error_histogram.h"
+#include "core/transport/candidates/reflected/direction_guide.h"
 #include "core/transport/sobol.h"
 
 namespace luxrig {

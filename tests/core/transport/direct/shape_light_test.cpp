@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "core/photometry/shape_sampling.h"
+#include "core/photometry/shapes/shape_sampling.h"
 #include "tests/core/transport/closed_forms.h"
 #include "tests/core/transport/diffuser.h"
 #include "tests/random.h"

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/photometry/sky.h"
+#include "core/photometry/sky/sky.h"
 #include "tests/core/transport/boxes.h"
 #include "tests/core/transport/paths/gather_evaluator_fixture.h"
 #include "tests/core/transport/within.h"

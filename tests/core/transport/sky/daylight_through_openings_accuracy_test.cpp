@@ -1,7 +1,7 @@
 /// daylight_through_openings: accuracy over many samples.
 #include <gtest/gtest.h>
 
-#include "core/photometry/sky.h"
+#include "core/photometry/sky/sky.h"
 #include "core/picture/picture.h"
 #include "tests/core/transport/sky/daylight_through_openings_fixture.h"
 #include "tests/core/transport/sky/room_with_windows.h"

@@ -1,7 +1,7 @@
 #pragma once
 /// Shared by the tests of sky_openings.
 
-#include "core/photometry/sky.h"
+#include "core/photometry/sky/sky.h"
 #include "core/transport/sky/sky_opening_finder.h"
 #include "core/transport/sky/sky_openings.h"
 #include "tests/core/transport/sky/room_with_windows.h"

@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "core/photometry/sky.h"
+#include "core/photometry/sky/sky.h"
 #include "core/transport/sky/sky_opening_finder.h"
 #include "tests/core/transport/closed_forms.h"
 #include "tests/core/transport/sky/room_with_windows.h"

@@ -6,7 +6,7 @@
 #include <random>
 #include <utility>
 
-#include "core/photometry/sky.h"
+#include "core/photometry/sky/sky.h"
 #include "core/transport/evaluator.h"
 
 namespace luxrig {

@@ -1,0 +1,178 @@
+/// How meter readings are used: corrections, and drift while the light stands still.
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/show/controller/show_state.h"
+
+namespace luxrig {
+namespace {
+
+// While the light stands still, meters are sampled once a second (meters and lamp ageing are slow).
+constexpr Duration kSampleEvery = std::chrono::seconds(1);
+// A drift must be seen in three samples, so that a person walking past a meter moves no light. Lamps drift over hours,
+// so more than one correction in ten seconds would only follow noise.
+constexpr int kDriftSamples = 3;
+constexpr Duration kDriftCorrectionEvery = std::chrono::seconds(10);
+// Level changes smaller than half a step of a 12-bit dimmer are not worth a fade.
+constexpr double kSmallestChange = 1e-4;
+
+}  // namespace
+
+/// Learns from a sample of every living meter. Lost meters take part as soon as they have one, since a believable
+/// sample is how a meter that was not believed comes back.
+void ShowController::State::take_sample(Time now) {
+  if (program.blackout || shared || !program.done(now) || too_much_lost() || any_dimmed_for_a_zone(program, now))
+    return;  // not the light that was asked for
+  if (phase == Phase::measuring ? solving != nullptr : now - readings.sampled_at() < kSampleEvery) return;
+  std::vector<LuxReading> sample;
+  for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) {
+    if (in_doubt(i) || bypassed.meter(i)) continue;
+    if (readings.has_sample(now, i)) {
+      sample.push_back(readings.sample(i));
+    } else if (!health.meter_lost(i)) {
+      return;
+    }
+  }
+  if (sample.empty()) return;
+  for (const Judgement& judgement : estimator.update(now, sample, program.to_level)) {
+    health.judged(judgement.luxmeter, now, judgement.why);
+    if (judgement.believed)
+      readings.believe(readings.sample(judgement.luxmeter));
+    else
+      readings.disbelieve(judgement.luxmeter);  // what it taught before stays: limits rely on it
+  }
+  scale.look(now, estimator, readings.measured(), program.to_level);
+  readings.take(now, sample);
+  bool all_believed = true;
+  for (std::size_t i = 0; i < rig.luxmeters.size(); ++i)
+    all_believed = all_believed && (readings.measured()[i] || bypassed.meter(i));
+  afresh = afresh && !all_believed;
+
+  std::vector<LimitBreach> present;
+  for (std::size_t p = 0; p < rig.points.size(); ++p) {
+    if (!points_in_force[p].max_lx || !estimator.confirmed(p)) continue;
+    const double worst_case_lx = estimator.max_lux_at_point(p, program.to_level, now);
+    if (worst_case_lx <= *points_in_force[p].max_lx * (1 + kBreachSlack)) continue;
+    const auto known =
+        std::find_if(breaches.begin(), breaches.end(), [&](const LimitBreach& breach) { return breach.point == p; });
+    present.push_back({p, worst_case_lx, known == breaches.end() ? now : known->since});
+  }
+  breaches = std::move(present);
+}
+
+/// Starts solving for the levels that readings and settings by hand require; take_solved() puts them to use.
+void ShowController::State::solve(Time now, Solving::For what) {
+  solving = std::make_shared<Solving>();
+  solving->what = what;
+  solving->facts = facts;
+  const bool for_hands = what == Solving::For::hands;
+  std::vector<double> levels = for_hands ? asked : with_hands(program.to_level);
+  if (!beside) {
+    solving->correction = estimator.correct(levels, now, for_hands);
+    solving->done = true;
+    return take_solved(now);
+  }
+  // With present knowledge: what is learned during the solve counts the next time.
+  beside([to = solving, known = std::make_shared<const GainEstimator>(estimator), levels = std::move(levels), now,
+          for_hands] {
+    to->correction = known->correct(levels, now, for_hands);
+    to->done = true;
+  });
+}
+
+/// Drops a solve that is outdated. If it was for settings by hand, that is still to be solved.
+void ShowController::State::drop_solving() {
+  unsolved = unsolved || (solving && solving->what == Solving::For::hands);
+  solving.reset();
+}
+
+void ShowController::State::take_solved(Time now) {
+  if (!solving || !solving->done) return;
+  const bool fades = phase == Phase::fading || phase == Phase::settling || phase == Phase::measuring ||
+                     phase == Phase::correcting || phase == Phase::holding;
+  const bool for_hands = solving->what == Solving::For::hands;
+  // Lamps that come on by stages finish that first.
+  if (for_hands && fades && !program.lamp_starts.empty() && !program.done(now)) return;
+  const std::shared_ptr<Solving> solved = std::exchange(solving, nullptr);
+  const bool holds = solved->facts == facts && cue && !program.blackout;
+  if (for_hands) {
+    if (!holds || !fades) {
+      unsolved = true;  // with the next cue
+      if (cue && fades && !program.blackout) {
+        unsolved = false;
+        solve(now, Solving::For::hands);
+      }
+      return;
+    }
+    asked = std::move(solved->correction.level);
+    aimed_lx = std::move(solved->correction.aimed_lx);
+    why = std::move(solved->correction.why);
+    return go_to_asked(now, present_levels(now, false));
+  }
+  if (!holds || (phase != Phase::measuring && phase != Phase::holding)) return;
+  if (solved->what == Solving::For::round) return correct_or_hold(now, std::move(solved->correction));
+  look_at_drift(now, std::move(solved->correction));
+}
+
+/// After a sample: another round if it would bring a metered goal nearer, or if a limit is in question.
+void ShowController::State::correct_or_hold(Time now, Correction correction) {
+  double change = 0;
+  for (std::size_t i = 0; i < correction.level.size(); ++i) {
+    change = std::max(change, std::abs(correction.level[i] - program.to_level[i]));
+  }
+  const bool wanted = possible_gain(correction) > rig.control.tolerance;
+  const bool worth_it = change > kSmallestChange && (wanted || !breaches.empty());
+  const bool in_rounds = phase == Phase::measuring ? round < rig.control.rounds : true;
+  aimed_lx = std::move(correction.aimed_lx);
+  why = std::move(correction.why);
+  converged = all_metered_goals_arrived();
+  if (!worth_it || (!in_rounds && breaches.empty())) {
+    enter(Phase::holding, now);
+    return;
+  }
+  for (std::size_t i = 0; i < cue->size(); ++i) {
+    if (lost[i] || bypassed.lamp(i)) {
+      correction.level[i] = program.to_level[i];
+      continue;
+    }
+    // A lamp that limits dimmed for a lost lamp comes back with it.
+    const bool same = std::abs(correction.level[i] - program.to_level[i]) <= kSmallestChange;
+    (*cue)[i] = correction.level[i];
+    if (!same || !lost.any()) asked[i] = correction.level[i];
+  }
+  if (hands.all().empty() && !bypassed.any_lamp()) hands.correct(asked);
+  ++round;
+  corrected_at = now;
+  fade(now, present_levels(now), std::move(correction.level), rig.control.correction_fade_s, rig.control.fade_curve);
+  enter(Phase::correcting, now);
+}
+
+void ShowController::State::watch_drift(Time now) {
+  if (readings.sampled_at() != now) return;
+  converged = all_metered_goals_arrived();
+  if (solving) return;
+  solve(now, breaches.empty() ? Solving::For::drift : Solving::For::round);
+}
+
+void ShowController::State::look_at_drift(Time now, Correction correction) {
+  drifted = possible_gain(correction) > rig.control.tolerance ? drifted + 1 : 0;
+  if (drifted >= kDriftSamples && now - corrected_at >= kDriftCorrectionEvery)
+    correct_or_hold(now, std::move(correction));
+}
+
+/// A meter that contradicts only its own past may have been right then, or may be right now. Trusting it now could
+/// drive the light up (a coat over it), so a person must ask for that by applying the plan again. Only in the safe
+/// look, where no limit relies on what it taught. Never for a meter whose value stood still while the light changed.
+void ShowController::State::doubt_the_past(Time now) {
+  if (!afresh || readings.sampled_at() != now) return;
+  for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) {
+    if (!health.meter_implausible(i) || !readings.changed(i)) continue;
+    estimator.forget(i);
+    ++facts;
+    scale.forget(i);
+  }
+}
+
+}  // namespace luxrig
