@@ -7,17 +7,17 @@
 
 #include "core/parallel.h"
 #include "core/photometry/light_colour.h"
+#include "core/transport/paths/irradiance_cache.h"
 #include "core/transport/paths/path_sampler.h"
-#include "core/transport/paths/shared_tails.h"
 #include "core/transport/sky/sky_opening_finder.h"
 
 namespace luxrig {
 namespace {
 
-/// Light hits of a pass, and how many of them each path is joined with.
+/// Light vertices of a pass, and how many of them each path is joined with.
 constexpr std::uint32_t kHitsPerPass = 1u << 14;
 constexpr std::uint32_t kPictureHitsPerPath = 4;
-/// Initial tail records, and those added each time the passes double.
+/// Initial irradiance records, and those added each time the passes double.
 constexpr std::size_t kFirstPictureRecords = 6000, kMoreRecords = 2000;
 constexpr std::uint32_t kPictureRecordPaths = 8;
 /// Connections worth less than this share of the mean reflected light are made only occasionally.
@@ -30,7 +30,7 @@ std::vector<Emitter> of_kind(const std::vector<Emitter>& emitters, bool point) {
   return some;
 }
 
-std::vector<double> light_of(const Lamps& lamps) {
+std::vector<double> light_of(const EmitterSampler& lamps) {
   std::vector<double> shares;
   for (std::size_t g = 0; g < lamps.groups(); ++g) shares.push_back(lamps.group_share(g));
   return shares;
@@ -66,7 +66,7 @@ class Renderer {
         sized_lamps_(sized_, {}, scene.bounds_world_m(), &openings_),
         importance_(emitters_.size(), 1.0),
         by_light_(light_of(lamps_)),
-        plan_(HitPlan::of(lamps_, by_light_, kPictureHitsPerPath, 1)),
+        plan_(LightVertexPlan::of(lamps_, by_light_, kPictureHitsPerPath, 1)),
         images_(scene, lamps_),
         sampler_(scene, lamps_, bsdfs_, images_, importance_),
         tails_(scene, sampler_, bsdfs_, emitters_.size(), 1, options.seed),
@@ -135,8 +135,8 @@ class Renderer {
       counts.push_back(!(lamps_.group_share(g) > 0)
                            ? 0
                            : std::bit_ceil(static_cast<std::uint32_t>(16 + kHitsPerPass * lamps_.group_share(g))));
-    Lamps::Weights weights;
-    pool_.refill(LightHits(scene_, lamps_, bsdfs_, &images_), mixed(options_.seed, 0x11647), counts, weights);
+    EmitterSampler::Weights weights;
+    pool_.refill(LightTracer(scene_, lamps_, bsdfs_, &images_), mixed(options_.seed, 0x11647), counts, weights);
   }
 
   /// Adds records where first legs from the surfaces in view end.
@@ -150,8 +150,9 @@ class Renderer {
         in_view.push_back({hit->position_world_m, hit->normal_world});
     }
     if (in_view.empty()) return;
-    const std::vector<HitPlan> plans(
-        in_view.size(), HitPlan::of(lamps_, by_light_, kPictureHitsPerPath * kPictureRecordPaths, kPictureRecordPaths));
+    const std::vector<LightVertexPlan> plans(
+        in_view.size(),
+        LightVertexPlan::of(lamps_, by_light_, kPictureHitsPerPath * kPictureRecordPaths, kPictureRecordPaths));
     const std::vector<double> cuts_lx(in_view.size(), 0.0);
     tails_.grow(in_view, in_view.size(), kPictureRecordPaths, {&pool_, 1}, plans, cuts_lx, options_.threads,
                 options_.watch);
@@ -159,9 +160,9 @@ class Renderer {
 
   struct Scratch {
     PathScratch path;
-    Lamps::Weights weights;
+    EmitterSampler::Weights weights;
     std::vector<double> sums;
-    std::vector<HitStretch> stretches;
+    std::vector<LightVertexRange> stretches;
   };
 
   /// Direct light that leaves towards `out`, and its illuminance, by primary.
@@ -181,7 +182,7 @@ class Renderer {
     });
     if (!sized_lamps_.any()) return sum;
     const double weight = sized_lamps_.weigh(hit.position_world_m, hit.normal_world, scratch.weights);
-    const LampChoice choice =
+    const EmitterChoice choice =
         sized_lamps_.choose(hit.position_world_m, hit.normal_world, scratch.weights, weight, select, u, v);
     if (!(choice.density > 0) || scene_.occluded(hit.position_world_m, hit.normal_world, choice.target_world_m))
       return sum;
@@ -285,14 +286,14 @@ class Renderer {
   std::vector<Emitter> emitters_, points_, sized_;
   std::vector<Bsdf> bsdfs_;
   SkyOpenings openings_;
-  Lamps lamps_, point_lamps_, sized_lamps_;
+  EmitterSampler lamps_, point_lamps_, sized_lamps_;
   std::vector<double> importance_;
   std::vector<double> by_light_;  ///< shares of the lamp groups
-  HitPlan plan_;
+  LightVertexPlan plan_;
   MirrorImages images_;
   PathSampler sampler_;
-  SharedTails tails_;
-  HitPool pool_;
+  IrradianceCache tails_;
+  LightVertexPool pool_;
   const Camera& camera_;
   const PictureOptions& options_;
   std::vector<PixelSum> sums_;

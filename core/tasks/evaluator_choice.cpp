@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "core/transport/paths/light_hits.h"
+#include "core/transport/paths/light_tracer.h"
 
 namespace luxrig {
 namespace {

@@ -7,7 +7,7 @@
 #include "core/tasks/rig_notes/closed_objects.h"
 #include "core/tasks/rig_notes/scene_reading.h"
 #include "core/tasks/rig_transport.h"
-#include "core/transport/direct/lamps.h"
+#include "core/transport/direct/emitter_sampler.h"
 
 namespace luxrig {
 namespace {

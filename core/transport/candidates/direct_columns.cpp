@@ -31,7 +31,7 @@ double unobstructed_lux(const CandidateLuminaire& luminaire, const Vec3& lamp_wo
   const double height_m = receiver.normal_world.dot(towards_m);
   if (!(height_m > 0)) return 0;
   const double distance_squared_m2 = towards_m.squaredNorm();
-  // As in smallest_distance_m() of core/transport/direct/lamps.h: nearer, coordinates cannot distinguish the two.
+  // As in smallest_distance_m() of core/transport/direct/emitter_sampler.h: nearer, coordinates cannot distinguish the two.
   const double rounding_m = kRoundings * receiver.position_world_m.cwiseAbs().maxCoeff();
   if (distance_squared_m2 <= rounding_m * rounding_m) return 0;
   const double per_distance = 1 / std::sqrt(distance_squared_m2);

@@ -7,7 +7,7 @@
 
 #include "core/parallel.h"
 #include "core/transport/candidates/reflected/indirect_plan.h"
-#include "core/transport/direct/lamps.h"
+#include "core/transport/direct/emitter_sampler.h"
 
 namespace luxrig {
 namespace {

@@ -10,7 +10,7 @@
 #include "core/transport/candidates/error_histogram.h"
 #include "core/transport/candidates/reflected/indirect_plan.h"
 #include "core/transport/candidates/reflected/reflected_columns.h"
-#include "core/transport/direct/lamps.h"
+#include "core/transport/direct/emitter_sampler.h"
 
 namespace luxrig {
 namespace {

@@ -290,8 +290,9 @@ Result<DirectLight> direct_light(const RayScene& scene, std::span<const Receiver
   return Evaluation(scene, receivers, emitters, options, progress_end, openings).run();
 }
 
-Result<DirectLight> direct_light(const RayScene& scene, std::span<const Receiver> receivers, const Lamps& lamps,
-                                 std::size_t emitters, int threads, const Watch& watch, double progress_end) {
+Result<DirectLight> direct_light(const RayScene& scene, std::span<const Receiver> receivers,
+                                 const EmitterSampler& lamps, std::size_t emitters, int threads, const Watch& watch,
+                                 double progress_end) {
   const RayScene* obstacles = obstacles_in(scene);
   DirectLight direct;
   direct.lux_per_level =

@@ -1,7 +1,7 @@
 #pragma once
 /// The direct part of a transport matrix, shared by all evaluators.
 
-#include "core/transport/direct/lamps.h"
+#include "core/transport/direct/emitter_sampler.h"
 
 namespace luxrig {
 
@@ -31,7 +31,7 @@ struct DirectLight {
 
 /// Point luminaires only. `watch.progress` goes from 0 to `progress_end`.
 [[nodiscard]] Result<DirectLight> direct_light(const RayScene& scene, std::span<const Receiver> receivers,
-                                               const Lamps& lamps, std::size_t emitters, int threads,
+                                               const EmitterSampler& lamps, std::size_t emitters, int threads,
                                                const Watch& watch, double progress_end = 1.0);
 
 /// Null when the scene has no triangle: nothing can block light, so no rays are needed.

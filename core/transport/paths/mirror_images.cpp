@@ -53,7 +53,7 @@ double ImageChoice::probability(std::uint32_t image) const {
   return at == images.begin() ? at->up_to : at->up_to - (at - 1)->up_to;
 }
 
-MirrorImages::MirrorImages(const RayScene& scene, const Lamps& lamps)
+MirrorImages::MirrorImages(const RayScene& scene, const EmitterSampler& lamps)
     : lamps_(lamps), places_(lamps.luminous_places()) {
   if (places_ == 0 || places_ > kMaxImages) return;
   find_planes(scene);

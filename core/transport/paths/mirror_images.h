@@ -11,7 +11,7 @@
 
 #include <vector>
 
-#include "core/transport/direct/lamps.h"
+#include "core/transport/direct/emitter_sampler.h"
 
 namespace luxrig {
 
@@ -32,7 +32,7 @@ class MirrorImages {
   static constexpr std::uint32_t kNoPlane = ~0u;
 
   /// scene, lamps   must outlive it
-  MirrorImages(const RayScene& scene, const Lamps& lamps);
+  MirrorImages(const RayScene& scene, const EmitterSampler& lamps);
 
   [[nodiscard]] bool any() const { return !planes_.empty() && places_ > 0; }
   /// The plane that a triangle is part of.
@@ -79,7 +79,7 @@ class MirrorImages {
                                            const Vec3& from_world_m) const;
   [[nodiscard]] static double density_per_m2(const Image& image, const Vec3& position_world_m);
 
-  const Lamps& lamps_;
+  const EmitterSampler& lamps_;
   std::size_t places_;
   std::vector<Plane> planes_;
   std::vector<std::uint32_t> plane_of_;  ///< by triangle

@@ -12,13 +12,13 @@
 
 #include "core/parallel.h"
 #include "core/transport/direct/direct_light.h"
-#include "core/transport/paths/path_rounds.h"
+#include "core/transport/paths/adaptive_sampling.h"
+#include "core/transport/paths/irradiance_cache.h"
+#include "core/transport/paths/light_vertex_planner.h"
 #include "core/transport/paths/path_sampler.h"
-#include "core/transport/paths/receiver_ends.h"
-#include "core/transport/paths/receiver_hits.h"
+#include "core/transport/paths/receiver_lookups.h"
 #include "core/transport/paths/record_bias.h"
 #include "core/transport/paths/replicate_sums.h"
-#include "core/transport/paths/shared_tails.h"
 #include "core/transport/progress.h"
 #include "core/transport/replicate_error.h"
 #include "core/transport/sky/sky_opening_finder.h"
@@ -27,7 +27,7 @@ namespace luxrig {
 namespace {
 
 constexpr std::size_t kPathReplicates = ReplicateSums::kReplicates;
-/// Samples per filling of the pools of light hits.
+/// Samples per filling of the pools of light vertices.
 constexpr std::uint32_t kChunk = 512;
 /// Hits that each path of a receiver is joined with.
 constexpr std::uint32_t kHitsPerPath = 4;
@@ -235,23 +235,23 @@ class PathEvaluation {
   /// A receiver's connections worth less are made only occasionally.
   double cut_lx(std::size_t r) const { return kCut * spent_[r].reflected_lx; }
 
-  /// Fills the pools with as many light hits as the plans need.
+  /// Fills the pools with as many light vertices as the plans need.
   void fill_pools(const std::vector<PathTask>& chunk) {
     std::vector<std::uint32_t> paths;
     for (const PathTask& task : chunk) paths.push_back(task.end - task.begin);
-    const auto counts = ReceiverHits::pool_counts(lamps_, plans_, paths);
-    const LightHits lights(scene_, lamps_, bsdfs_, &images_);
+    const auto counts = LightVertexPlanner::pool_counts(lamps_, plans_, paths);
+    const LightTracer lights(scene_, lamps_, bsdfs_, &images_);
     pools_.resize(kPathReplicates);
     std::vector<std::uint64_t> rays(kPathReplicates, 0);
     parallel_for(kPathReplicates, options_.threads, [&](std::size_t k) {
-      Lamps::Weights weights;
+      EmitterSampler::Weights weights;
       if (!options_.watch.stop.stop_requested())
         rays[k] = pools_[k].refill(lights, mixed(mixed(options_.seed, 0x11647), k), counts, weights);
     });
     for (const std::uint64_t n : rays) matrix_.rays += n;
   }
 
-  /// Joins the receivers with light hits, and learns which lamps matter to which receiver.
+  /// Joins the receivers with light vertices, and learns which lamps matter to which receiver.
   void join_hits(const std::vector<PathTask>& chunk) {
     if (options_.watch.stop.stop_requested()) return;
     const std::size_t groups = lamps_.groups();
@@ -260,7 +260,7 @@ class PathEvaluation {
       const auto& [r, begin, end] = chunk[i];
       const std::uint32_t samples = end - begin;
       ReceiverProgress& spent = spent_[r];
-      std::vector<HitStretch> stretches;
+      std::vector<LightVertexRange> stretches;
       std::vector<double> squares(groups);
       std::vector<double> values(columns_);
       for (std::size_t k = 0; k < kPathReplicates; ++k) {
@@ -285,7 +285,7 @@ class PathEvaluation {
   /// keep their noise and distance in step with the receivers' own noise.
   void grow_tails(const std::vector<PathTask>& chunk) {
     std::vector<Receiver> from;
-    std::vector<HitPlan> plans;
+    std::vector<LightVertexPlan> plans;
     std::vector<double> cuts_lx;
     std::size_t paths = 0;
     for (const PathTask& task : chunk) {
@@ -421,7 +421,7 @@ class PathEvaluation {
     const Eigen::VectorXd brightest_lx = matrix_.lux_per_level.colwise().maxCoeff();
     const auto more_than_spread = [](double unfound_lx, const Eigen::RowVectorXd& lux) {
       const double spread_lx = standard_error_of_mean({lux.data(), kPathReplicates}),
-                   both_lx = PathRounds::with_unfound_lx(spread_lx, unfound_lx);
+                   both_lx = AdaptiveSampling::with_unfound_lx(spread_lx, unfound_lx);
       return std::sqrt(std::max(0.0, (both_lx - spread_lx) * (both_lx + spread_lx)));
     };
     parallel_for(receivers_.size(), options_.threads, [&](std::size_t r) {
@@ -459,20 +459,20 @@ class PathEvaluation {
   Eigen::Matrix3Xd colour_of_emitters_;  ///< linear Rec. 709
   std::vector<Bsdf> bsdfs_;
   SkyOpenings openings_;
-  Lamps lamps_;
+  EmitterSampler lamps_;
   std::size_t channels_, columns_;
   std::vector<double> importance_;
   MirrorImages images_;
   std::vector<ImageChoice> images_seen_;  ///< by receiver; empty if there are none
   PathSampler sampler_;
   Eigen::VectorXd levels_;
-  ReceiverHits hits_;
-  std::vector<HitPool> pools_;  ///< by replicate
-  std::vector<HitPlan> plans_;  ///< by task of the chunk
-  std::optional<SharedTails> tails_;
-  std::optional<ReceiverEnds> ends_;  ///< only with tails
+  LightVertexPlanner hits_;
+  std::vector<LightVertexPool> pools_;  ///< by replicate
+  std::vector<LightVertexPlan> plans_;  ///< by task of the chunk
+  std::optional<IrradianceCache> tails_;
+  std::optional<ReceiverLookups> ends_;  ///< only with tails
   RecordBias record_bias_;
-  PathRounds spent_;
+  AdaptiveSampling spent_;
   std::vector<Eigen::MatrixXd> direct_replicates_;  ///< empty when the direct part is exact
   ReplicateSums sums_;
   double done_ = 0;

@@ -57,7 +57,7 @@ double kept(double value, double cut, double chance) {
 
 }  // namespace
 
-PathSampler::Join PathSampler::join(const Vertex& vertex, const LightHit& hit, double hits, double cut,
+PathSampler::Join PathSampler::join(const Vertex& vertex, const LightVertex& hit, double hits, double cut,
                                     double chance) const {
   const Vec3 towards_m = hit.position_world_m - vertex.position_world_m;
   const double height_m = vertex.normal_world.dot(towards_m);
@@ -143,8 +143,8 @@ Bsdf::Sample PathSampler::next_direction(const Vertex& vertex, double u, double 
   return next;
 }
 
-std::uint64_t PathSampler::join_start(const Vertex& start, const HitPool& pool, const HitPlan& plan,
-                                      std::span<const HitStretch> stretches, double cut, std::uint64_t key,
+std::uint64_t PathSampler::join_start(const Vertex& start, const LightVertexPool& pool, const LightVertexPlan& plan,
+                                      std::span<const LightVertexRange> stretches, double cut, std::uint64_t key,
                                       const PathSums& sums, std::span<double> squares) const {
   std::uint64_t rays = 0;
   Dice dice(key);
@@ -169,7 +169,7 @@ std::uint64_t PathSampler::join_start(const Vertex& start, const HitPool& pool, 
     rays += std::exchange(count, 0);
   };
   for (std::size_t g = 0; g < stretches.size(); ++g) {
-    for (const LightHit& hit : pool.hits(g).subspan(stretches[g].begin, stretches[g].count)) {
+    for (const LightVertex& hit : pool.hits(g).subspan(stretches[g].begin, stretches[g].count)) {
       if (!hit.shines()) continue;
       joins[count] = join(vertex, hit, plan.at_start[g], cut, dice.plain());
       if (!(joins[count].worth > 0)) continue;
@@ -182,8 +182,8 @@ std::uint64_t PathSampler::join_start(const Vertex& start, const HitPool& pool, 
   return rays;
 }
 
-std::uint64_t PathSampler::join_deeper(const Vertex& vertex, const HitPool& pool, const HitPlan& plan, double cut,
-                                       double select, double chance, const PathSums& sums) const {
+std::uint64_t PathSampler::join_deeper(const Vertex& vertex, const LightVertexPool& pool, const LightVertexPlan& plan,
+                                       double cut, double select, double chance, const PathSums& sums) const {
   std::size_t g = 0;
   while (g + 1 < pool.groups() && select >= plan.deeper[g]) select -= plan.deeper[g++];
   const auto shining = pool.shining(g);
@@ -194,7 +194,7 @@ std::uint64_t PathSampler::join_deeper(const Vertex& vertex, const HitPool& pool
   // Hits without flux count as drawn: this many of all samples shine.
   Vertex weighed = vertex;
   weighed.through_rgb *= static_cast<double>(shining.size()) / pool.count(g);
-  const LightHit& hit = pool.hits(g)[shining[pick]];
+  const LightVertex& hit = pool.hits(g)[shining[pick]];
   const Join joined = join(weighed, hit, plan.deeper[g], cut, chance);
   if (!(joined.worth > 0)) return 0;
   if (!scene_.occluded(vertex.position_world_m, vertex.normal_world, hit.position_world_m))
@@ -213,7 +213,7 @@ std::uint64_t PathSampler::join_image(const Vertex& vertex, std::span<const doub
   const Vec3 direction = towards_m * per_distance;
   const Bsdf& bsdf = bsdfs_[images_.material_of(place.plane)];
   const std::size_t lamp = place.place_of_lamp;
-  LampChoice choice;
+  EmitterChoice choice;
   if (lamps_.place_has_size(lamp) && dice.by_gloss < 0.5) {
     const Bsdf::Sample drawn = bsdf.sample(place.normal_world, -direction, dice.s, dice.t, dice.lobe);
     if (!(drawn.density_per_sr > 0)) return 0;
@@ -266,7 +266,7 @@ std::uint64_t PathSampler::ask_lamps(const Vertex& before, const Vertex& vertex,
                                      std::span<const double> hits, double cut, double select, double u, double v,
                                      double chance, PathScratch& scratch, const PathSums& sums) const {
   scratch.weights_sum = lamps_.weigh(vertex.position_world_m, vertex.normal_world, scratch.weights);
-  const LampChoice choice =
+  const EmitterChoice choice =
       lamps_.choose(vertex.position_world_m, vertex.normal_world, scratch.weights, scratch.weights_sum, select, u, v);
   if (!(choice.density > 0)) return 0;
   const Vec3 per_lux = vertex.through_rgb.cwiseProduct(
@@ -321,8 +321,8 @@ void PathSampler::meet_lights(const Vertex& before, const Vertex& vertex, const 
 }
 
 std::uint64_t PathSampler::add_path(const Vertex& start, const SobolSequence& samples, std::uint32_t index,
-                                    const HitPool& pool, const HitPlan& plan, double cut, PathScratch& scratch,
-                                    const PathSums& sums, TailShare* tails) const {
+                                    const LightVertexPool& pool, const LightVertexPlan& plan, double cut,
+                                    PathScratch& scratch, const PathSums& sums, TailShare* tails) const {
   std::uint64_t rays = 0;
   scratch.first_leg_m = HUGE_VAL;
   PathDice dice(samples, index);
@@ -419,31 +419,32 @@ double PathSampler::worth_of(const PathSums& sums) const {
 }
 
 std::optional<std::uint32_t> PathSampler::record_for(const Vec3& position_world_m, const Vec3& normal_world,
-                                                     const TailRecords& records, std::uint64_t& rays,
+                                                     const IrradianceRecords& records, std::uint64_t& rays,
                                                      std::optional<std::uint32_t> so_far) const {
   const auto found = records.nearest(position_world_m, normal_world);
   if (!found) return std::nullopt;
   if (found->record == so_far) return so_far;  // the path to it was clear
-  const TailRecords::Vertex& place = records.place(found->record);
+  const IrradianceRecords::Vertex& place = records.place(found->record);
   if (found->distance_m <= place.clear_m) return found->record;
   ++rays;
   if (!sees_record(position_world_m, normal_world, place, found->distance_m)) return std::nullopt;
   return found->record;
 }
 
-bool PathSampler::sees_record(const Vec3& position_world_m, const Vec3& normal_world, const TailRecords::Vertex& record,
-                              double distance_m) const {
+bool PathSampler::sees_record(const Vec3& position_world_m, const Vec3& normal_world,
+                              const IrradianceRecords::Vertex& record, double distance_m) const {
   // Above both surfaces by a share of their distance, so that a nearly plane surface does not block itself.
   const double lift_m = 0.05 * distance_m;
   return !scene_.occluded(position_world_m + lift_m * normal_world, normal_world,
                           record.position_world_m + lift_m * record.normal_world);
 }
 
-PathSampler::EndsSum PathSampler::add_ends(TailEnds& ends, const TailRecords& records, const PathSums& sums) const {
+PathSampler::EndsSum PathSampler::add_ends(RecordLookups& ends, const IrradianceRecords& records,
+                                           const PathSums& sums) const {
   EndsSum sum;
   std::size_t check = 0;
   for (std::size_t i = 0; i < ends.ends.size(); ++i) {
-    TailEnd& end = ends.ends[i];
+    RecordLookup& end = ends.ends[i];
     if (end.looked_at < records.size()) {
       // A nearer record behind an edge does not represent it; then the present one stays.
       if (const auto record =
@@ -461,7 +462,7 @@ PathSampler::EndsSum PathSampler::add_ends(TailEnds& ends, const TailRecords& re
   return sum;
 }
 
-double PathSampler::add_record(const Vec3& per_lux_rgb, const TailRecords& records, std::size_t record,
+double PathSampler::add_record(const Vec3& per_lux_rgb, const IrradianceRecords& records, std::size_t record,
                                const PathSums& sums) const {
   const Vec3 luminous = Vec3(kLuminance[0], kLuminance[1], kLuminance[2]).cwiseProduct(per_lux_rgb);
   if (!sums.values.empty()) {

@@ -14,10 +14,10 @@
 /// for the receiver.
 /// Unbiased for any Russian roulette.
 
-#include "core/transport/paths/hit_pool.h"
+#include "core/transport/paths/irradiance_records.h"
+#include "core/transport/paths/light_vertex_pool.h"
 #include "core/transport/paths/mirror_images.h"
-#include "core/transport/paths/tail_ends.h"
-#include "core/transport/paths/tail_records.h"
+#include "core/transport/paths/record_lookups.h"
 
 namespace luxrig {
 
@@ -27,9 +27,9 @@ struct PathScratch {
     std::size_t emitter;
     Vec3 rgb;  ///< lux at level 1 by primary, MIS weight included
   };
-  Lamps::Weights weights;  ///< of the lamps at the last vertex
+  EmitterSampler::Weights weights;  ///< of the lamps at the last vertex
   double weights_sum = 0;
-  Lamps::Weights image_weights;  ///< of the lamps at the place where an image was drawn
+  EmitterSampler::Weights image_weights;  ///< of the lamps at the place where an image was drawn
   SkyOpenings::Outside outside;
   std::vector<Lit> lit;
   std::vector<double> beside;  ///< sums of a path that checks a record
@@ -38,13 +38,13 @@ struct PathScratch {
 
 /// Records in which a path may end, at its second vertex or at the next one with a record nearby.
 struct TailShare {
-  const TailRecords* records = nullptr;  ///< with three channels; null = paths end by themselves
+  const IrradianceRecords* records = nullptr;  ///< with three channels; null = paths end by themselves
   bool link = false;                     ///< do not add the record's value, only report the record
   /// With link: the record that the last path ended in, and the weight of its reflected lux at the path's start.
   std::optional<std::uint32_t> linked;
   Vec3 per_lux_rgb = Vec3::Zero();
   /// If set, path ends are stored here instead of adding the records' values (PathSampler::add_ends).
-  TailEnds* ends = nullptr;
+  RecordLookups* ends = nullptr;
   /// With ends: continue the path anyway, to measure the record's bias. The result uses the record, which scatters
   /// less.
   bool check = false;
@@ -80,8 +80,8 @@ class PathSampler {
   /// a room's light, but paths seldom meet it by chance.
   static constexpr double kOutsideShare = 0.2;
 
-  PathSampler(const RayScene& scene, const Lamps& lamps, const std::vector<Bsdf>& bsdfs, const MirrorImages& images,
-              std::span<const double> levels)
+  PathSampler(const RayScene& scene, const EmitterSampler& lamps, const std::vector<Bsdf>& bsdfs,
+              const MirrorImages& images, std::span<const double> levels)
       : scene_(scene), lamps_(lamps), bsdfs_(bsdfs), images_(images), levels_(levels) {}
 
   struct Vertex {
@@ -100,14 +100,14 @@ class PathSampler {
     return {receiver.position_world_m, receiver.normal_world, receiver.normal_world};
   }
 
-  /// Joins a start with light hits (b above), for as many paths as the stretches serve.
+  /// Joins a start with light vertices (b above), for as many paths as the stretches serve.
   ///
   /// cut       connections worth less (under the levels) are made only occasionally, with more weight; 0 = make all
   /// squares   if given: adds the squares of the result of one hit per path, by group
   /// Returns the rays cast.
-  std::uint64_t join_start(const Vertex& start, const HitPool& pool, const HitPlan& plan,
-                           std::span<const HitStretch> stretches, double cut, std::uint64_t key, const PathSums& sums,
-                           std::span<double> squares = {}) const;
+  std::uint64_t join_start(const Vertex& start, const LightVertexPool& pool, const LightVertexPlan& plan,
+                           std::span<const LightVertexRange> stretches, double cut, std::uint64_t key,
+                           const PathSums& sums, std::span<double> squares = {}) const;
 
   /// Adds one path. Together with join_start() it is an unbiased estimate of the reflected light that leaves `start`
   /// towards out_world, by emitter at level 1: the illuminance [lx] of a receiver, or the luminance [cd/m²] of a
@@ -116,9 +116,9 @@ class PathSampler {
   /// pool      hits traced from the same replicate's samples; plan as given to join_start()
   /// tails     if given, the rest of a path is taken from a nearby record
   /// Returns the rays cast.
-  std::uint64_t add_path(const Vertex& start, const SobolSequence& samples, std::uint32_t index, const HitPool& pool,
-                         const HitPlan& plan, double cut, PathScratch& scratch, const PathSums& sums,
-                         TailShare* tails = nullptr) const;
+  std::uint64_t add_path(const Vertex& start, const SobolSequence& samples, std::uint32_t index,
+                         const LightVertexPool& pool, const LightVertexPlan& plan, double cut, PathScratch& scratch,
+                         const PathSums& sums, TailShare* tails = nullptr) const;
 
   /// Contribution of stored path ends, and result of checks; luminous sums at the levels.
   struct EndsSum {
@@ -128,7 +128,7 @@ class PathSampler {
     std::uint64_t rays = 0;
   };
   /// Looks up again the ends for which new records have come, then adds their records' values.
-  EndsSum add_ends(TailEnds& ends, const TailRecords& records, const PathSums& sums) const;
+  EndsSum add_ends(RecordLookups& ends, const IrradianceRecords& records, const PathSums& sums) const;
 
   /// Of the emitters: weights for choosing paths.
   [[nodiscard]] std::span<const double> importances() const { return levels_; }
@@ -140,7 +140,7 @@ class PathSampler {
 
   /// Whether the path between a place of a surface and a record on it is clear; one ray.
   [[nodiscard]] bool sees_record(const Vec3& position_world_m, const Vec3& normal_world,
-                                 const TailRecords::Vertex& record, double distance_m) const;
+                                 const IrradianceRecords::Vertex& record, double distance_m) const;
 
  private:
   /// Light of a hit through a vertex, if nothing is in between.
@@ -150,9 +150,9 @@ class PathSampler {
     double worth = 0;  ///< luminance at the levels; 0 = none, or skipped this time
   };
   /// hits      expected hits of the group per path
-  [[nodiscard]] Join join(const Vertex& vertex, const LightHit& hit, double hits, double cut, double chance) const;
-  std::uint64_t join_deeper(const Vertex& vertex, const HitPool& pool, const HitPlan& plan, double cut, double select,
-                            double chance, const PathSums& sums) const;
+  [[nodiscard]] Join join(const Vertex& vertex, const LightVertex& hit, double hits, double cut, double chance) const;
+  std::uint64_t join_deeper(const Vertex& vertex, const LightVertexPool& pool, const LightVertexPlan& plan, double cut,
+                            double select, double chance, const PathSums& sums) const;
   /// Random numbers for an image, a place on its plane, and a place on a lamp with size.
   struct ImageDice {
     double select, u, v, by_gloss, lobe, s, t, chance;
@@ -197,10 +197,10 @@ class PathSampler {
   /// The record for a vertex, if one is near and nothing is in between. `so_far`: the record found when there were
   /// fewer.
   [[nodiscard]] std::optional<std::uint32_t> record_for(const Vec3& position_world_m, const Vec3& normal_world,
-                                                        const TailRecords& records, std::uint64_t& rays,
+                                                        const IrradianceRecords& records, std::uint64_t& rays,
                                                         std::optional<std::uint32_t> so_far = {}) const;
   /// Adds a record's value; returns its luminous lux at the levels.
-  double add_record(const Vec3& per_lux_rgb, const TailRecords& records, std::size_t record,
+  double add_record(const Vec3& per_lux_rgb, const IrradianceRecords& records, std::size_t record,
                     const PathSums& sums) const;
   /// Luminous lux of sums at the levels.
   [[nodiscard]] double worth_of(const PathSums& sums) const;
@@ -211,7 +211,7 @@ class PathSampler {
   }
 
   const RayScene& scene_;
-  const Lamps& lamps_;
+  const EmitterSampler& lamps_;
   const std::vector<Bsdf>& bsdfs_;
   const MirrorImages& images_;
   std::span<const double> levels_;  ///< importances: above 0 for all

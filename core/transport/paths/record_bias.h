@@ -1,5 +1,5 @@
 #pragma once
-/// Common bias of all tail records, measured by paths that continued beside their records.
+/// Common bias of all irradiance records, measured by paths that continued beside their records.
 
 #include <array>
 #include <cstddef>

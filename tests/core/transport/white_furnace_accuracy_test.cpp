@@ -56,14 +56,14 @@ TEST_P(WhiteFurnace, IsAsBrightAsTheSkyAtAnyGlossAndRoughness) {
       for (Eigen::Index r = 0; r < error_lx.size(); ++r)
         EXPECT_NEAR(transport->lux_per_level(r, 0), kLux, 6 * error_lx[r])
             << "specular " << specular << " roughness " << roughness << " receiver " << r;
-      // All share the same light hits, so their mean is known little better than each value.
+      // All share the same light vertices, so their mean is known little better than each value.
       EXPECT_NEAR(transport->lux_per_level.mean(), kLux, 3 * error_lx.mean())
           << "specular " << specular << " roughness " << roughness;
       if (specular == 0) break;
     }
 }
 
-// Receivers that look down on the plate see the sky in its gloss. Neither random light sampling nor light hits find it.
+// Receivers that look down on the plate see the sky in its gloss. Neither random light sampling nor light vertices find it.
 TEST_P(WhiteFurnace, APlateMirrorsTheSkyAsItsModelSays) {
   Scene scene = basin(0.95, 0.04, 0.05);
   for (Vec3f& vertex : scene.vertices_m) vertex *= 5;

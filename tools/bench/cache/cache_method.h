@@ -1,7 +1,7 @@
 #pragma once
 /// Shared by both kinds of cache.
 
-#include "core/transport/direct/lamps.h"
+#include "core/transport/direct/emitter_sampler.h"
 #include "tools/bench/cache/radiance_cache.h"
 
 namespace luxrig {

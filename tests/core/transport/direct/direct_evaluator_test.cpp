@@ -3,7 +3,7 @@
 #include <limits>
 #include <random>
 
-#include "core/transport/direct/lamps.h"
+#include "core/transport/direct/emitter_sampler.h"
 #include "core/transport/evaluator.h"
 #include "tests/core/transport/lamp_pose.h"
 #include "tools/bench/rooms/enclosures.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "core/transport/direct/lamps.h"
+#include "core/transport/direct/emitter_sampler.h"
 
 namespace luxrig {
 namespace {
@@ -49,8 +49,8 @@ std::vector<SurfacePoint> points_in_hall(int count) {
 
 TEST(LampCells, EveryLampThatLightsCanBeChosenAndChancesAddUpToOne) {
   const HallOfSpots hall(600);
-  const Lamps lamps(hall.spots, hall.levels, kHall_m);
-  Lamps::Weights weights;
+  const EmitterSampler lamps(hall.spots, hall.levels, kHall_m);
+  EmitterSampler::Weights weights;
   int lit = 0, of_rest = 0;
   for (const SurfacePoint& point : points_in_hall(300)) {
     const double sum = lamps.weigh(point.at_m, point.normal, weights);
@@ -72,15 +72,15 @@ TEST(LampCells, EveryLampThatLightsCanBeChosenAndChancesAddUpToOne) {
 /// Σ lux / density over evenly spaced choices is the light of all lamps, those weighed one by one and the rest.
 TEST(LampCells, ChoicesGiveTheLightOfAllLamps) {
   const HallOfSpots hall(300);
-  const Lamps lamps(hall.spots, hall.levels, kHall_m);
-  Lamps::Weights weights;
+  const EmitterSampler lamps(hall.spots, hall.levels, kHall_m);
+  EmitterSampler::Weights weights;
   constexpr int kChoices = 200'000;
   for (const SurfacePoint& point : points_in_hall(12)) {
     double exact_lx = 0, chosen_lx = 0;
     lamps.light(nullptr, point.at_m, point.normal, [&](std::size_t, double lux) { exact_lx += lux; });
     const double sum = lamps.weigh(point.at_m, point.normal, weights);
     for (int i = 0; i < kChoices; ++i) {
-      const LampChoice choice = lamps.choose(point.at_m, point.normal, weights, sum, (i + 0.5) / kChoices, 0.5, 0.5);
+      const EmitterChoice choice = lamps.choose(point.at_m, point.normal, weights, sum, (i + 0.5) / kChoices, 0.5, 0.5);
       if (!(choice.density > 0)) continue;
       lamps.light(choice, [&](std::size_t e, double lux, double) {
         chosen_lx += lux / kChoices;
@@ -95,8 +95,8 @@ TEST(LampCells, ChoicesGiveTheLightOfAllLamps) {
 
 TEST(LampCells, FewLampsAndPointsOutsideAreWeighedAsEver) {
   const HallOfSpots few(80), many(600);
-  Lamps::Weights weights;
-  const Lamps of_few(few.spots, {}, kHall_m), of_many(many.spots, {}, kHall_m);
+  EmitterSampler::Weights weights;
+  const EmitterSampler of_few(few.spots, {}, kHall_m), of_many(many.spots, {}, kHall_m);
   for (const SurfacePoint& point : points_in_hall(20)) {
     of_few.weigh(point.at_m, point.normal, weights);
     EXPECT_EQ(weights.places.size(), 80u);

@@ -49,7 +49,7 @@ TEST(MirrorImages, PlacesAreDrawnAsOftenAsTheirDensitySays) {
   const Scene scene = smooth_floor(0.5, 0.4);
   const RayScene rays(scene);
   const std::vector<Emitter> emitters = {bare_lamp({0.5, 0.2, 1.5}), bare_lamp({-1, -0.5, 2}, 0.2)};
-  const Lamps lamps(emitters, {}, rays.bounds_world_m());
+  const EmitterSampler lamps(emitters, {}, rays.bounds_world_m());
   const MirrorImages images(rays, lamps);
   ASSERT_TRUE(images.any());
   const Vec3 from(-0.2, 0.4, 1);
@@ -80,7 +80,7 @@ TEST(MirrorImages, NoneWhereNothingIsSmooth) {
   for (const auto& [specular, roughness] : {std::pair(0.0, 0.1), std::pair(0.5, 0.9)}) {
     const Scene scene = smooth_floor(specular, roughness);
     const RayScene rays(scene);
-    const Lamps lamps(emitters, {}, rays.bounds_world_m());
+    const EmitterSampler lamps(emitters, {}, rays.bounds_world_m());
     EXPECT_FALSE(MirrorImages(rays, lamps).any());
   }
 }

@@ -28,7 +28,7 @@ TEST(PathEvaluator, MeanOfAClosedCubeIsFluxOverAreaTimesOneMinusReflectance) {
     EvaluateOptions options = within(0.005);
     options.max_rays = 2'000'000;
     const auto matrix = path(rays, receivers, {bulb_at(1000, {0.3, -0.2, 0.4})}, options);
-    // Receivers share light hits, so their errors correlate. The error of the mean is the error of the replicates'
+    // Receivers share light vertices, so their errors correlate. The error of the mean is the error of the replicates'
     // means.
     std::vector<double> means_lx;
     for (const auto& replicate : matrix.replicates) means_lx.push_back(replicate.mean());

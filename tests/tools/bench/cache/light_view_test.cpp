@@ -37,7 +37,7 @@ TEST(LightView, FluxFallsOnEachFaceAsTheDistanceLawSays) {
   const auto walls = cube_wall_grid(2, 20);
   std::vector<Receiver> receivers;
   for (const WallPoint& p : walls) receivers.push_back({p.position_m, p.normal});
-  const Lamps lamps(std::span(&emitter, 1));
+  const EmitterSampler lamps(std::span(&emitter, 1));
   const auto direct = direct_light(rays, receivers, lamps, 1, 1, {});
   ASSERT_TRUE(direct.has_value());
   for (int axis = 0; axis < 3; ++axis)

@@ -1,21 +1,21 @@
-#include "core/transport/paths/receiver_ends.h"
+#include "core/transport/paths/receiver_lookups.h"
 
 #include "core/parallel.h"
 
 namespace luxrig {
 namespace {
 
-constexpr std::size_t kMaxEnds = (256u << 20) / sizeof(TailEnd);
+constexpr std::size_t kMaxEnds = (256u << 20) / sizeof(RecordLookup);
 
 }  // namespace
 
-bool ReceiverEnds::have_room(std::size_t paths) const {
+bool ReceiverLookups::have_room(std::size_t paths) const {
   std::size_t kept = 0;
-  for (const TailEnds& ends : ends_) kept += ends.ends.size();
+  for (const RecordLookups& ends : ends_) kept += ends.ends.size();
   return kept + paths <= kMaxEnds;
 }
 
-std::vector<std::uint64_t> ReceiverEnds::look_up(std::span<const std::size_t> receivers, int threads) {
+std::vector<std::uint64_t> ReceiverLookups::look_up(std::span<const std::size_t> receivers, int threads) {
   parallel_for(receivers.size() * kReplicates, threads, [&](std::size_t task) {
     // A replicate's records stay in the cache while all receivers use them.
     const std::size_t k = task / receivers.size(), at = receivers[task % receivers.size()] * kReplicates + k;
@@ -35,7 +35,7 @@ std::vector<std::uint64_t> ReceiverEnds::look_up(std::span<const std::size_t> re
   return rays;
 }
 
-std::uint64_t ReceiverEnds::take(ReplicateSums& sums, std::size_t channels, int threads) {
+std::uint64_t ReceiverLookups::take(ReplicateSums& sums, std::size_t channels, int threads) {
   parallel_for(ends_.size(), threads, [&](std::size_t at) {
     std::vector<double> values(channels * static_cast<std::size_t>(levels_.size()), 0.0);
     sums_[at] = sampler_.add_ends(ends_[at], tails_.records(at % kReplicates), {values, channels});
@@ -48,13 +48,13 @@ std::uint64_t ReceiverEnds::take(ReplicateSums& sums, std::size_t channels, int 
   return rays;
 }
 
-double ReceiverEnds::important_lx(std::size_t receiver) const {
+double ReceiverLookups::important_lx(std::size_t receiver) const {
   double lux = 0;
   for (std::size_t k = 0; k < kReplicates; ++k) lux += sums_[receiver * kReplicates + k].taken_lx;
   return lux;
 }
 
-RecordBias ReceiverEnds::bias(const PathRounds& spent) const {
+RecordBias ReceiverLookups::bias(const AdaptiveSampling& spent) const {
   RecordBias bias;
   for (std::size_t at = 0; at < sums_.size(); ++at) {
     const double reflected_lx = spent[at / kReplicates].reflected_lx;

@@ -16,15 +16,15 @@ struct ReceiverProgress {
   std::uint64_t rays = 0;
   double lux = 0;  ///< under the options' levels
   double direct_lx = 0;
-  double reflected_lx = 0;          ///< lux without direct_lx; at first from the first round's hits alone
-  double error_lx = 0;              ///< standard error of lux from its own replicates
-  double shared_error_lx = 0;       ///< error added by the tail records' common bias
-  double taken_lx = 0;              ///< from tail records, summed over samples and replicates
-  double scatter = 0;               ///< approximate relative error² × samples, from the last rounds
-  std::uint32_t scatter_of = 0;     ///< samples when it was last updated
-  double min_scatter = HUGE_VAL;    ///< least error_lx² × samples so far
-  bool found = false;               ///< any reflected light
-  bool alone = false;               ///< records' noise dominates: from now on its paths do not use records
+  double reflected_lx = 0;        ///< lux without direct_lx; at first from the first round's hits alone
+  double error_lx = 0;            ///< standard error of lux from its own replicates
+  double shared_error_lx = 0;     ///< error added by the irradiance records' common bias
+  double taken_lx = 0;            ///< from irradiance records, summed over samples and replicates
+  double scatter = 0;             ///< approximate relative error² × samples, from the last rounds
+  std::uint32_t scatter_of = 0;   ///< samples when it was last updated
+  double min_scatter = HUGE_VAL;  ///< least error_lx² × samples so far
+  bool found = false;             ///< any reflected light
+  bool alone = false;             ///< records' noise dominates: from now on its paths do not use records
 };
 
 /// Samples of a receiver in a round: [begin, end) of each of its replicates.
@@ -33,12 +33,12 @@ struct PathTask {
   std::uint32_t begin, end;
 };
 
-class PathRounds {
+class AdaptiveSampling {
  public:
   /// options     must outlive it
   /// sends_on    share of its light that a bright place sends to a receiver
   /// ways_each   ways by which a path continues
-  PathRounds(std::size_t receivers, const EvaluateOptions& options, double sends_on, double ways_each)
+  AdaptiveSampling(std::size_t receivers, const EvaluateOptions& options, double sends_on, double ways_each)
       : options_(options), sends_on_(sends_on), ways_each_(ways_each), progress_(receivers) {}
 
   [[nodiscard]] ReceiverProgress& operator[](std::size_t receiver) { return progress_[receiver]; }

@@ -1,22 +1,23 @@
 #pragma once
-/// Ends of the receivers' paths in tail records, and the light of those records.
+/// Ends of the receivers' paths in irradiance records, and the light of those records.
 
 #include <algorithm>
 
-#include "core/transport/paths/path_rounds.h"
+#include "core/transport/paths/adaptive_sampling.h"
+#include "core/transport/paths/irradiance_cache.h"
 #include "core/transport/paths/path_sampler.h"
 #include "core/transport/paths/replicate_sums.h"
-#include "core/transport/paths/shared_tails.h"
 
 namespace luxrig {
 
-class ReceiverEnds {
+class ReceiverLookups {
  public:
   static constexpr std::size_t kReplicates = ReplicateSums::kReplicates;
 
   /// sampler, tails   must outlive it
   /// levels           of the emitters, for the lux
-  ReceiverEnds(const PathSampler& sampler, const SharedTails& tails, std::size_t receivers, Eigen::VectorXd levels)
+  ReceiverLookups(const PathSampler& sampler, const IrradianceCache& tails, std::size_t receivers,
+                  Eigen::VectorXd levels)
       : sampler_(sampler),
         tails_(tails),
         levels_(std::move(levels)),
@@ -27,7 +28,7 @@ class ReceiverEnds {
 
   /// Whether there is room for the ends of this many more paths.
   [[nodiscard]] bool have_room(std::size_t paths) const;
-  [[nodiscard]] TailEnds& of(std::size_t receiver, std::size_t replicate) {
+  [[nodiscard]] RecordLookups& of(std::size_t receiver, std::size_t replicate) {
     return ends_[receiver * kReplicates + replicate];
   }
 
@@ -45,14 +46,14 @@ class ReceiverEnds {
 
   /// Bias of the records, from the last look_up(): relative to each receiver's reflected light, so that errors are
   /// right for dim receivers, too.
-  [[nodiscard]] RecordBias bias(const PathRounds& spent) const;
+  [[nodiscard]] RecordBias bias(const AdaptiveSampling& spent) const;
 
  private:
   const PathSampler& sampler_;
-  const SharedTails& tails_;
+  const IrradianceCache& tails_;
   Eigen::VectorXd levels_;
   bool as_important_;                       ///< paths are chosen by the levels themselves: none is 0
-  std::vector<TailEnds> ends_;              ///< receivers × replicates
+  std::vector<RecordLookups> ends_;         ///< receivers × replicates
   std::vector<PathSampler::EndsSum> sums_;  ///< likewise
   std::vector<double> taken_lx_;            ///< likewise
 };

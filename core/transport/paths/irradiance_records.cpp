@@ -1,4 +1,4 @@
-#include "core/transport/paths/tail_records.h"
+#include "core/transport/paths/irradiance_records.h"
 
 #include <algorithm>
 #include <array>
@@ -13,7 +13,7 @@ constexpr double kMaxCrowded = 8;
 
 }  // namespace
 
-void TailRecords::append(std::span<const Vertex> places, std::size_t columns) {
+void IrradianceRecords::append(std::span<const Vertex> places, std::size_t columns) {
   places_.insert(places_.end(), places.begin(), places.end());
   columns_ = columns;
   values_.resize(places_.size() * columns, 0.0f);
@@ -23,7 +23,7 @@ void TailRecords::append(std::span<const Vertex> places, std::size_t columns) {
   if (!places_.empty()) build_grid();
 }
 
-void TailRecords::sum_up(std::size_t record, std::span<const double> levels) {
+void IrradianceRecords::sum_up(std::size_t record, std::span<const double> levels) {
   // Shorter gaps cost more to skip than to add.
   constexpr std::uint32_t kShortestGap = 16;
   const auto emitters = static_cast<std::uint32_t>(levels.size());
@@ -43,7 +43,7 @@ void TailRecords::sum_up(std::size_t record, std::span<const double> levels) {
   sums.end = static_cast<std::uint32_t>(lit_.size());
 }
 
-void TailRecords::build_grid() {
+void IrradianceRecords::build_grid() {
   Eigen::AlignedBox3d box;
   for (const Vertex& place : places_) box.extend(place.position_world_m);
   origin_world_m_ = box.min();
@@ -78,7 +78,7 @@ void TailRecords::build_grid() {
                                             places_[i].normal_world.cast<float>(), i};
 }
 
-TailRecords::Cell TailRecords::cell_of(const Vec3f& position_m) const {
+IrradianceRecords::Cell IrradianceRecords::cell_of(const Vec3f& position_m) const {
   Cell cell{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     // A place far from all records has none nearby; the bound keeps the conversion defined.
@@ -88,14 +88,14 @@ TailRecords::Cell TailRecords::cell_of(const Vec3f& position_m) const {
   return cell;
 }
 
-std::size_t TailRecords::bucket_of(const Cell& cell) const {
+std::size_t IrradianceRecords::bucket_of(const Cell& cell) const {
   // Row by row, so that neighbours are contiguous; cells beyond the table share its buckets.
   const std::uint32_t at = static_cast<std::uint32_t>(cell[0]) + static_cast<std::uint32_t>(cell[1]) * row_cells_ +
                            static_cast<std::uint32_t>(cell[2]) * layer_cells_;
   return at & (static_cast<std::uint32_t>(bucket_begin_.size()) - 2);
 }
 
-void TailRecords::find_beside(std::uint32_t record, std::vector<std::uint32_t>& beside) const {
+void IrradianceRecords::find_beside(std::uint32_t record, std::vector<std::uint32_t>& beside) const {
   constexpr float kAlike = 0.95f;  // cos 18°
   beside.clear();
   const Vec3f position_m = (places_[record].position_world_m - origin_world_m_).cast<float>();
@@ -112,7 +112,8 @@ void TailRecords::find_beside(std::uint32_t record, std::vector<std::uint32_t>& 
   }
 }
 
-std::optional<TailRecords::Found> TailRecords::nearest(const Vec3& position_world_m, const Vec3& normal_world) const {
+std::optional<IrradianceRecords::Found> IrradianceRecords::nearest(const Vec3& position_world_m,
+                                                                   const Vec3& normal_world) const {
   if (places_.empty()) return std::nullopt;
   constexpr float kAlike = 0.9f;  // cos 25°
   constexpr float kFlat = 0.95f;

@@ -20,7 +20,7 @@
 namespace luxrig {
 
 /// A place of light, or a point or direction of it, chosen from a surface point (next-event estimation).
-struct LampChoice {
+struct EmitterChoice {
   std::size_t place = 0;
   Vec3 direction_world = Vec3::UnitZ();  ///< unit, towards the light
   Vec3 target_world_m = Vec3::Zero();    ///< where a shadow ray ends
@@ -31,7 +31,7 @@ struct LampChoice {
 };
 
 /// A ray of light as it leaves a lamp.
-struct LampRay {
+struct EmitterRay {
   std::size_t emitter = 0;
   Vec3 from_world_m = Vec3::Zero();
   Vec3 direction_world = Vec3::UnitZ();
@@ -41,13 +41,13 @@ struct LampRay {
 };
 
 /// Keeps pointers into the emitters' distributions and to the openings: they must outlive it.
-class Lamps {
+class EmitterSampler {
  public:
   /// levels    weights for choosing lamps. Empty = all 1. Lamps at 0 are chosen seldom, but not never.
   /// bounds    of all geometry: a sky's light enters through the sphere around it
   /// openings  where skies shine into rooms; null or empty = unknown
-  explicit Lamps(std::span<const Emitter> emitters, std::span<const double> levels = {},
-                 const Eigen::AlignedBox3d& bounds_world_m = {}, const SkyOpenings* openings = nullptr);
+  explicit EmitterSampler(std::span<const Emitter> emitters, std::span<const double> levels = {},
+                          const Eigen::AlignedBox3d& bounds_world_m = {}, const SkyOpenings* openings = nullptr);
 
   /// Direct illuminance [lx at level 1] at a surface point from each point luminaire that lights it,
   ///   E = I(ω) cosθ V / d²   (photometric distance law)
@@ -102,21 +102,21 @@ class Lamps {
 
   /// Chooses one of the weighed places by `select` in [0, 1), and a direction by u and v if it has size. density 0 =
   /// none.
-  [[nodiscard]] LampChoice choose(const Vec3& position_world_m, const Vec3& normal_world, const Weights& weights,
-                                  double sum, double select, double u, double v) const;
+  [[nodiscard]] EmitterChoice choose(const Vec3& position_world_m, const Vec3& normal_world, const Weights& weights,
+                                     double sum, double select, double u, double v) const;
 
   /// The same for a given place of luminaires that was drawn with this probability.
-  [[nodiscard]] LampChoice ask_place(std::size_t place, double probability, const Vec3& position_world_m,
-                                     const Vec3& normal_world, double u, double v) const;
+  [[nodiscard]] EmitterChoice ask_place(std::size_t place, double probability, const Vec3& position_world_m,
+                                        const Vec3& normal_world, double u, double v) const;
 
   /// The same for a place with size, in a direction drawn by other means; density 0 = the direction misses it.
-  [[nodiscard]] LampChoice place_towards(std::size_t place, const Vec3& position_world_m, const Vec3& normal_world,
-                                         const Vec3& direction_world) const;
+  [[nodiscard]] EmitterChoice place_towards(std::size_t place, const Vec3& position_world_m, const Vec3& normal_world,
+                                            const Vec3& direction_world) const;
 
   /// Unshadowed light of each lamp of the chosen place, as lit(emitter, lux / choice.density, density with which emit()
   /// of its group makes a first hit here, in the unit of choice.density).
   template <class Lit>
-  void light(const LampChoice& choice, Lit&& lit) const {
+  void light(const EmitterChoice& choice, Lit&& lit) const {
     const Site& place = places_[choice.place];
     const double per_density = choice.factor / choice.density;
     for (std::size_t i = place.begin; i < place.end; ++i) {
@@ -186,7 +186,7 @@ class Lamps {
   [[nodiscard]] bool place_has_size(std::size_t place) const { return places_[place].kind != Kind::point; }
 
   /// Light that leaves a group: a lamp by its share and a direction by (u, v), a place on it by (s, t).
-  [[nodiscard]] LampRay emit(std::size_t group, double u, double v, double s, double t) const;
+  [[nodiscard]] EmitterRay emit(std::size_t group, double u, double v, double s, double t) const;
 
   static constexpr std::size_t kMaxGroups = 64;  ///< of luminaires; each sky is one more
   [[nodiscard]] std::size_t groups() const { return groups_.size(); }
@@ -258,10 +258,10 @@ class Lamps {
   [[nodiscard]] static Vec3 at_lamp_m(const Site& place, const Vec3& position_world_m) {
     return place.world_from_lamp.transpose() * (position_world_m - place.position_world_m);
   }
-  void fill_in(LampChoice& choice, const Vec3& position_world_m, double distance_m, double density_per_sr,
+  void fill_in(EmitterChoice& choice, const Vec3& position_world_m, double distance_m, double density_per_sr,
                const Vec3& normal_world, const Vec3& direction_world) const;
   void weigh_skies(const Vec3& position_world_m, const Vec3& normal_world, Weights& weights) const;
-  [[nodiscard]] LampRay emit_sky(const Lamp& lamp, double u, double v, double s, double t) const;
+  [[nodiscard]] EmitterRay emit_sky(const Lamp& lamp, double u, double v, double s, double t) const;
   /// Density [1/sr] with which choose() draws a direction towards the sky.
   [[nodiscard]] double sky_density_per_sr(const Site& place, const Vec3& position_world_m, const Vec3& direction_world,
                                           const Weights& weights) const;

@@ -4,11 +4,11 @@
 #include <algorithm>
 
 #include "core/transport/bsdf.h"
-#include "core/transport/direct/lamps.h"
+#include "core/transport/direct/emitter_sampler.h"
 
 namespace luxrig {
 
-void Lamps::weigh_skies(const Vec3& position_world_m, const Vec3& normal_world, Weights& weights) const {
+void EmitterSampler::weigh_skies(const Vec3& position_world_m, const Vec3& normal_world, Weights& weights) const {
   if (openings_) openings_->view(position_world_m, normal_world, weights.view);
   if (!(normal_world.z() > -0.99999)) return;
   for (std::size_t p = places_.size(); p > 0 && places_[p - 1].kind == Kind::sky; --p) {
@@ -21,23 +21,23 @@ void Lamps::weigh_skies(const Vec3& position_world_m, const Vec3& normal_world, 
   }
 }
 
-double Lamps::sky_density_per_sr(const Site& place, const Vec3& position_world_m, const Vec3& direction_world,
-                                 const Weights& weights) const {
+double EmitterSampler::sky_density_per_sr(const Site& place, const Vec3& position_world_m, const Vec3& direction_world,
+                                          const Weights& weights) const {
   const double of_sky = lamps_[place.begin].sky->density_per_sr(direction_world);
   const double whole = whole_sky_share(place, weights);
   if (!(whole < 1)) return of_sky;
   return whole * of_sky + (1 - whole) * openings_->density_per_sr(weights.view, position_world_m, direction_world);
 }
 
-double Lamps::line_density_per_m2(const Vec3& towards_world, const Vec3& position_world_m) const {
+double EmitterSampler::line_density_per_m2(const Vec3& towards_world, const Vec3& position_world_m) const {
   const double over_scene = 1 / (kPi * radius_m_ * radius_m_);
   if (!openings_) return over_scene;
   const double whole = openings_->whole_scene_share(towards_world);
   return whole * over_scene + (1 - whole) * openings_->line_density_per_m2(towards_world, position_world_m);
 }
 
-LampRay Lamps::emit_sky(const Lamp& lamp, double u, double v, double s, double t) const {
-  LampRay ray;
+EmitterRay EmitterSampler::emit_sky(const Lamp& lamp, double u, double v, double s, double t) const {
+  EmitterRay ray;
   ray.emitter = lamp.emitter;
   const DirectionSample sample = lamp.sky->sample(u, v);
   if (!(sample.density_per_sr > 0)) return ray;

@@ -1,4 +1,4 @@
-#include "core/transport/paths/light_hits.h"
+#include "core/transport/paths/light_tracer.h"
 
 #include <algorithm>
 #include <cmath>
@@ -40,12 +40,12 @@ double largest_reflectance(const RayScene& scene) {
   return scene.bounds_world_m().isEmpty() ? 0 : largest;
 }
 
-LightHit LightHits::trace(std::size_t group, const SobolSequence& samples, std::uint32_t index, Lamps::Weights& weights,
-                          std::uint64_t& rays) const {
-  LightHit light;
+LightVertex LightTracer::trace(std::size_t group, const SobolSequence& samples, std::uint32_t index,
+                               EmitterSampler::Weights& weights, std::uint64_t& rays) const {
+  LightVertex light;
   const auto [u, v] = samples.pair(index, kLightSet, 0);
   const auto [s, t] = lamps_.have_size() ? samples.pair(index, kLightSet, 1) : std::array<double, 2>{};
-  const LampRay ray = lamps_.emit(group, u, v, s, t);
+  const EmitterRay ray = lamps_.emit(group, u, v, s, t);
   if (!(ray.flux_lm > 0) || !box_meets(bounds_world_m_, ray.from_world_m, ray.direction_world)) return light;
   ++rays;
   // Moved off along the ray: a panel may be flush with a wall, which must not stop its light at the start.

@@ -1,4 +1,4 @@
-#include "core/transport/paths/receiver_hits.h"
+#include "core/transport/paths/light_vertex_planner.h"
 
 #include <algorithm>
 #include <bit>
@@ -17,7 +17,7 @@ constexpr std::size_t kMinHits = 32, kMaxHits = 4096;  ///< of a group, unless o
 
 }  // namespace
 
-HitPlan ReceiverHits::plan(std::size_t receiver, double per_path, std::uint32_t paths) const {
+LightVertexPlan LightVertexPlanner::plan(std::size_t receiver, double per_path, std::uint32_t paths) const {
   const std::size_t groups = lamps_.groups();
   const std::span<const Learnt> learnt(learnt_.data() + receiver * groups, groups);
   std::vector<double> weights(groups, 0.0);
@@ -30,10 +30,11 @@ HitPlan ReceiverHits::plan(std::size_t receiver, double per_path, std::uint32_t 
     const double by_light = lamps_.group_share(g);
     weights[g] = sum > 0 ? (1 - kUnlearnt) * weights[g] / sum + kUnlearnt * by_light : by_light;
   }
-  return HitPlan::of(lamps_, weights, per_path * paths, paths);
+  return LightVertexPlan::of(lamps_, weights, per_path * paths, paths);
 }
 
-void ReceiverHits::learn(std::size_t receiver, std::span<const double> squares, std::span<const HitStretch> stretches) {
+void LightVertexPlanner::learn(std::size_t receiver, std::span<const double> squares,
+                               std::span<const LightVertexRange> stretches) {
   for (std::size_t g = 0; g < stretches.size(); ++g) {
     Learnt& learnt = learnt_[receiver * lamps_.groups() + g];
     learnt.squares += squares[g];
@@ -41,8 +42,9 @@ void ReceiverHits::learn(std::size_t receiver, std::span<const double> squares, 
   }
 }
 
-std::vector<std::uint32_t> ReceiverHits::pool_counts(const Lamps& lamps, std::span<const HitPlan> plans,
-                                                     std::span<const std::uint32_t> paths) {
+std::vector<std::uint32_t> LightVertexPlanner::pool_counts(const EmitterSampler& lamps,
+                                                           std::span<const LightVertexPlan> plans,
+                                                           std::span<const std::uint32_t> paths) {
   std::vector<std::uint32_t> counts(lamps.groups(), 0);
   for (std::size_t g = 0; g < counts.size(); ++g) {
     if (!(lamps.group_share(g) > 0)) continue;

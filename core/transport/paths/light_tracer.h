@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/transport/bsdf.h"
-#include "core/transport/direct/lamps.h"
+#include "core/transport/direct/emitter_sampler.h"
 #include "core/transport/paths/mirror_images.h"
 #include "core/transport/sobol.h"
 
@@ -17,7 +17,7 @@ namespace luxrig {
 [[nodiscard]] double largest_reflectance(const RayScene& scene);
 
 /// Landing place of a ray from a lamp. flux_rgb is zero if it lands nowhere or on black.
-struct LightHit {
+struct LightVertex {
   Vec3 position_world_m = Vec3::Zero();
   Vec3 normal_world = Vec3::UnitZ();    ///< on the lit side
   Vec3 to_light_world = Vec3::UnitZ();  ///< unit, towards the source of the light
@@ -33,19 +33,19 @@ struct LightHit {
   [[nodiscard]] bool shines() const { return bsdf != nullptr && flux_rgb.maxCoeff() > 0; }
 };
 
-class LightHits {
+class LightTracer {
  public:
-  LightHits(const RayScene& scene, const Lamps& lamps, const std::vector<Bsdf>& bsdfs,
-            const MirrorImages* images = nullptr)
+  LightTracer(const RayScene& scene, const EmitterSampler& lamps, const std::vector<Bsdf>& bsdfs,
+              const MirrorImages* images = nullptr)
       : scene_(scene), lamps_(lamps), bsdfs_(bsdfs), images_(images), bounds_world_m_(scene.bounds_world_m()) {}
 
   /// The hit of one sample of a group of lamps. Adds the rays cast: none if it cannot meet geometry.
-  [[nodiscard]] LightHit trace(std::size_t group, const SobolSequence& samples, std::uint32_t index,
-                               Lamps::Weights& weights, std::uint64_t& rays) const;
+  [[nodiscard]] LightVertex trace(std::size_t group, const SobolSequence& samples, std::uint32_t index,
+                                  EmitterSampler::Weights& weights, std::uint64_t& rays) const;
 
  private:
   const RayScene& scene_;
-  const Lamps& lamps_;
+  const EmitterSampler& lamps_;
   const std::vector<Bsdf>& bsdfs_;
   const MirrorImages* images_;
   Eigen::AlignedBox3d bounds_world_m_;

@@ -1,4 +1,4 @@
-#include "core/transport/paths/shared_tails.h"
+#include "core/transport/paths/irradiance_cache.h"
 
 #include <algorithm>
 #include <cmath>
@@ -24,9 +24,9 @@ constexpr double kBlendClear = 0.4;
 
 }  // namespace
 
-std::uint64_t SharedTails::grow(std::span<const Receiver> receivers, std::size_t count, std::uint32_t paths,
-                                std::span<const HitPool> pools, std::span<const HitPlan> plans,
-                                std::span<const double> cuts_lx, int threads, const Watch& watch) {
+std::uint64_t IrradianceCache::grow(std::span<const Receiver> receivers, std::size_t count, std::uint32_t paths,
+                                    std::span<const LightVertexPool> pools, std::span<const LightVertexPlan> plans,
+                                    std::span<const double> cuts_lx, int threads, const Watch& watch) {
   parallel_for(replicates_.size(), threads, [&](std::size_t k) {
     const auto first = static_cast<std::uint32_t>(replicates_[k].records.size());
     add_places(k, receivers, count);
@@ -39,15 +39,15 @@ std::uint64_t SharedTails::grow(std::span<const Receiver> receivers, std::size_t
   return rays;
 }
 
-void SharedTails::add_places(std::size_t k, std::span<const Receiver> receivers, std::size_t count) {
+void IrradianceCache::add_places(std::size_t k, std::span<const Receiver> receivers, std::size_t count) {
   Replicate& replicate = replicates_[k];
   const SobolSequence samples(mixed(mixed(seed_, kTailPlaceKey), k));
-  std::vector<TailRecords::Vertex> places;
+  std::vector<IrradianceRecords::Vertex> places;
   replicate.seen_by.clear();
   for (std::size_t i = 0; i < count; ++i) {
     Receiver from = receivers[i % receivers.size()];
     const std::uint32_t index = replicate.drawn + static_cast<std::uint32_t>(i);
-    std::optional<TailRecords::Vertex> found;
+    std::optional<IrradianceRecords::Vertex> found;
     for (std::uint32_t leg = 0; leg < (i % kFartherPlaces == 0 ? 2 : 1); ++leg) {
       const auto [u, v] = samples.pair(index, leg, 0);
       ++replicate.rays;
@@ -56,7 +56,7 @@ void SharedTails::add_places(std::size_t k, std::span<const Receiver> receivers,
       if (!hit) break;
       from = {hit->position_world_m, hit->normal_world};
       const Bsdf& bsdf = bsdfs_[scene_.material_index_of(hit->triangle)];
-      if (bsdf.matt() && !bsdf.black()) found = TailRecords::Vertex{hit->position_world_m, hit->normal_world, 0};
+      if (bsdf.matt() && !bsdf.black()) found = IrradianceRecords::Vertex{hit->position_world_m, hit->normal_world, 0};
     }
     if (!found) continue;
     places.push_back(*found);
@@ -66,24 +66,25 @@ void SharedTails::add_places(std::size_t k, std::span<const Receiver> receivers,
   replicate.records.append(places, columns_);
 }
 
-void SharedTails::sample(std::size_t k, std::uint32_t first, std::uint32_t paths, const HitPool& pool,
-                         std::span<const HitPlan> plans, std::span<const double> cuts_lx, const Watch& watch) {
+void IrradianceCache::sample(std::size_t k, std::uint32_t first, std::uint32_t paths, const LightVertexPool& pool,
+                             std::span<const LightVertexPlan> plans, std::span<const double> cuts_lx,
+                             const Watch& watch) {
   Replicate& replicate = replicates_[k];
-  TailRecords& records = replicate.records;
+  IrradianceRecords& records = replicate.records;
   replicate.heads.resize((records.size() - first) * columns_);
   replicate.links.clear();
   PathScratch scratch;
-  std::vector<HitStretch> stretches;
+  std::vector<LightVertexRange> stretches;
   std::vector<double> values(columns_);
   TailShare share;
   share.records = &records;
   share.link = true;
   for (auto record = first; record < records.size(); ++record) {
     if (watch.stop.stop_requested()) return;
-    const TailRecords::Vertex& place = records.place(record);
+    const IrradianceRecords::Vertex& place = records.place(record);
     auto start = PathSampler::at({place.position_world_m, place.normal_world});
     start.images = sampler_.images_from_anywhere();
-    const HitPlan& plan = plans[replicate.seen_by[record - first]];
+    const LightVertexPlan& plan = plans[replicate.seen_by[record - first]];
     const double cut_lx = cuts_lx[replicate.seen_by[record - first]];
     const std::uint64_t key = mixed(mixed(seed_, kPathKey), mixed(record, k));
     const SobolSequence samples(key);
@@ -104,9 +105,9 @@ void SharedTails::sample(std::size_t k, std::uint32_t first, std::uint32_t paths
 
 /// Solves E = H + W E by Gauss–Seidel, where H are the heads and W the links. Reflectances below 1 ensure convergence.
 /// Older records do not depend on newer ones: none of their links goes there.
-void SharedTails::settle(std::size_t k, std::uint32_t first) {
+void IrradianceCache::settle(std::size_t k, std::uint32_t first) {
   Replicate& replicate = replicates_[k];
-  TailRecords& records = replicate.records;
+  IrradianceRecords& records = replicate.records;
   const std::size_t emitters = columns_ / 3;
   std::vector<float> sum(columns_);
   constexpr int kMaxSweeps = 200;
@@ -138,19 +139,19 @@ void SharedTails::settle(std::size_t k, std::uint32_t first) {
 }
 
 /// The told value of each record is the mean of itself and the visible records beside it.
-void SharedTails::blend(std::size_t k) {
+void IrradianceCache::blend(std::size_t k) {
   Replicate& replicate = replicates_[k];
-  TailRecords& records = replicate.records;
+  IrradianceRecords& records = replicate.records;
   const auto size = static_cast<std::uint32_t>(records.size());
   std::vector<float> count(size, 1.0f);
   for (std::uint32_t i = 0; i < size; ++i) std::ranges::copy(records.values(i), records.told(i).begin());
   std::vector<std::uint32_t> beside;
   for (std::uint32_t i = 0; i < size; ++i) {
     records.find_beside(i, beside);
-    const TailRecords::Vertex& here = records.place(i);
+    const IrradianceRecords::Vertex& here = records.place(i);
     for (const std::uint32_t j : beside) {
       if (j < i) continue;  // already done
-      const TailRecords::Vertex& there = records.place(j);
+      const IrradianceRecords::Vertex& there = records.place(j);
       const double distance_m = (there.position_world_m - here.position_world_m).norm();
       if (distance_m > kBlendClear * std::max(here.clear_m, there.clear_m)) {
         ++replicate.rays;

@@ -1,4 +1,4 @@
-#include "core/transport/paths/hit_pool.h"
+#include "core/transport/paths/light_vertex_pool.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,8 +13,8 @@ double fraction_of(std::uint64_t bits) { return static_cast<double>(bits >> 11) 
 
 }  // namespace
 
-std::uint64_t HitPool::refill(const LightHits& lights, std::uint64_t key, std::span<const std::uint32_t> counts,
-                              Lamps::Weights& weights) {
+std::uint64_t LightVertexPool::refill(const LightTracer& lights, std::uint64_t key,
+                                      std::span<const std::uint32_t> counts, EmitterSampler::Weights& weights) {
   std::uint64_t rays = 0;
   groups_.resize(counts.size());
   hits_.clear();
@@ -41,8 +41,9 @@ std::uint32_t hits_for(double per_path, std::uint32_t paths) {
   return static_cast<std::uint32_t>(std::ceil(per_path * paths - 1e-9));
 }
 
-HitPlan HitPlan::of(const Lamps& lamps, std::span<const double> weights, double hits, std::uint32_t paths) {
-  HitPlan plan;
+LightVertexPlan LightVertexPlan::of(const EmitterSampler& lamps, std::span<const double> weights, double hits,
+                                    std::uint32_t paths) {
+  LightVertexPlan plan;
   double sum = 0, light = 0;
   for (std::size_t g = 0; g < weights.size(); ++g) {
     sum += weights[g];
@@ -58,8 +59,8 @@ HitPlan HitPlan::of(const Lamps& lamps, std::span<const double> weights, double 
   return plan;
 }
 
-void draw_stretches(const HitPlan& plan, const HitPool& pool, std::uint32_t paths, std::uint64_t key,
-                    std::vector<HitStretch>& stretches) {
+void draw_stretches(const LightVertexPlan& plan, const LightVertexPool& pool, std::uint32_t paths, std::uint64_t key,
+                    std::vector<LightVertexRange>& stretches) {
   stretches.resize(pool.groups());
   for (std::size_t g = 0; g < pool.groups(); ++g) {
     const double expected = plan.at_start[g] * paths;
@@ -67,8 +68,8 @@ void draw_stretches(const HitPlan& plan, const HitPool& pool, std::uint32_t path
     std::uint32_t count = hits_for(plan.at_start[g], paths);
     if (expected < 1) count = fraction_of(bits) < expected ? 1 : 0;
     const std::uint32_t places = count > 0 ? pool.count(g) / count : 0;
-    stretches[g] =
-        places == 0 ? HitStretch{} : HitStretch{static_cast<std::uint32_t>(mixed(bits, 1) % places) * count, count};
+    stretches[g] = places == 0 ? LightVertexRange{}
+                               : LightVertexRange{static_cast<std::uint32_t>(mixed(bits, 1) % places) * count, count};
   }
 }
 

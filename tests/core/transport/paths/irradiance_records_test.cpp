@@ -1,5 +1,5 @@
 // Finds the nearest record and neighbouring records, compared with a search through all records.
-#include "core/transport/paths/tail_records.h"
+#include "core/transport/paths/irradiance_records.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 namespace luxrig {
 namespace {
 
-using Vertex = TailRecords::Vertex;
+using Vertex = IrradianceRecords::Vertex;
 
 /// Random places on a floor of 6 m by 4 m, scaled, from a corner.
 std::vector<Vertex> scattered(std::mt19937_64& random, std::size_t count, const Vec3& about_m, double scale) {
@@ -22,14 +22,14 @@ std::vector<Vertex> scattered(std::mt19937_64& random, std::size_t count, const 
   return places;
 }
 
-TEST(TailRecords, TheNearestIsThatOfASearchThroughAll) {
+TEST(IrradianceRecords, TheNearestIsThatOfASearchThroughAll) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> unit(0, 1);
   for (const double scale : {1e-3, 1.0, 1e3}) {
     for (const std::size_t count : {1u, 2u, 7u, 400u}) {
       const Vec3 about_m = Vec3(10, -20, 3) * scale;
       const std::vector<Vertex> places = scattered(random, count, about_m, scale);
-      TailRecords records;
+      IrradianceRecords records;
       // Appended in two steps, as records grow.
       records.append(std::span(places).first(count / 2), 3);
       records.append(std::span(places).subspan(count / 2), 3);
@@ -52,7 +52,7 @@ TEST(TailRecords, TheNearestIsThatOfASearchThroughAll) {
   }
 }
 
-TEST(TailRecords, ThoseBesideEachOtherAreSoMutuallyAndLieAlikeInOnePlane) {
+TEST(IrradianceRecords, ThoseBesideEachOtherAreSoMutuallyAndLieAlikeInOnePlane) {
   std::mt19937_64 random(2);
   const double apart_m = 3;
   std::vector<Vertex> places = scattered(random, 300, Vec3::Zero(), 1);
@@ -65,7 +65,7 @@ TEST(TailRecords, ThoseBesideEachOtherAreSoMutuallyAndLieAlikeInOnePlane) {
     other.normal_world = kind == 0 ? Vec3(-Vec3::UnitZ()) : kind == 1 ? Vec3(Vec3::UnitY()) : Vec3(Vec3::UnitZ());
     places.push_back(other);
   }
-  TailRecords records;
+  IrradianceRecords records;
   records.append(places, 3);
   std::vector<std::uint32_t> beside;
   std::set<std::pair<std::uint32_t, std::uint32_t>> pairs;
@@ -82,13 +82,13 @@ TEST(TailRecords, ThoseBesideEachOtherAreSoMutuallyAndLieAlikeInOnePlane) {
   EXPECT_GT(pairs.size(), places.size()) << "one each at least, on average";
 }
 
-TEST(TailRecords, TakesCoincidentCollinearAndFarPlaces) {
+TEST(IrradianceRecords, TakesCoincidentCollinearAndFarPlaces) {
   std::vector<std::uint32_t> beside;
   for (const double offset_m : {0.0, 1e7}) {
     for (const double step_m : {0.0, 1e-9, 1.0}) {
       std::vector<Vertex> places;
       for (int i = 0; i < 50; ++i) places.push_back({Vec3(offset_m + step_m * i, offset_m, 0), Vec3::UnitZ(), 0});
-      TailRecords records;
+      IrradianceRecords records;
       records.append(places, 6);
       for (std::uint32_t i = 0; i < places.size(); ++i) {
         records.find_beside(i, beside);
@@ -100,17 +100,17 @@ TEST(TailRecords, TakesCoincidentCollinearAndFarPlaces) {
       EXPECT_FALSE(records.nearest(Vec3(-1e12, 1e12, 1e12), Vec3::UnitZ()));
     }
   }
-  TailRecords none;
+  IrradianceRecords none;
   EXPECT_FALSE(none.nearest(Vec3::Zero(), Vec3::UnitZ()));
 }
 
-TEST(TailRecords, AFewFarOffDoNotMakeOneCellOfARoom) {
+TEST(IrradianceRecords, AFewFarOffDoNotMakeOneCellOfARoom) {
   std::mt19937_64 random(4);
   std::uniform_real_distribution<double> unit(-1, 1);
   for (const double far_m : {10.0, 1e3, 1e4}) {
     std::vector<Vertex> places = scattered(random, 3000, Vec3::Zero(), 1);
     for (int i = 0; i < 30; ++i) places.push_back({far_m * Vec3(unit(random), unit(random), 0), Vec3::UnitZ(), 0});
-    TailRecords records;
+    IrradianceRecords records;
     records.append(places, 3);
     std::vector<std::uint32_t> beside;
     std::size_t all = 0;

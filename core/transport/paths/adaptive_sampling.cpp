@@ -1,4 +1,4 @@
-#include "core/transport/paths/path_rounds.h"
+#include "core/transport/paths/adaptive_sampling.h"
 
 #include <algorithm>
 
@@ -10,7 +10,7 @@ namespace {
 
 /// First number of samples per replicate: 128 paths show the approximate illuminance for later rounds.
 constexpr std::uint32_t kFirstRoundSamples = 8;
-/// A path seldom has more than 4 vertices, each with one ray to reach it, one to a lamp and one to a light hit.
+/// A path seldom has more than 4 vertices, each with one ray to reach it, one to a lamp and one to a light vertex.
 constexpr std::uint64_t kRaysPerPath = 12;
 /// If no reflected light was found, an error of zero is believed only from this many samples on.
 constexpr std::uint32_t kSamplesToBelieveNothing = 256;
@@ -27,11 +27,11 @@ constexpr double kMaxSamplesPerNew = 32;
 
 }  // namespace
 
-std::uint64_t PathRounds::rays_left(std::uint64_t rays_cast) const {
+std::uint64_t AdaptiveSampling::rays_left(std::uint64_t rays_cast) const {
   return options_.max_rays > rays_cast ? options_.max_rays - rays_cast : 0;
 }
 
-std::vector<PathTask> PathRounds::first(std::uint64_t rays_cast) const {
+std::vector<PathTask> AdaptiveSampling::first(std::uint64_t rays_cast) const {
   const std::uint64_t rays_per_sample = kRaysPerPath * progress_.size() * RecordBias::kReplicates;
   std::uint32_t samples = kFirstRoundSamples;
   while (samples > 1 && rays_per_sample * samples > rays_left(rays_cast)) samples /= 2;
@@ -40,7 +40,7 @@ std::vector<PathTask> PathRounds::first(std::uint64_t rays_cast) const {
   return all;
 }
 
-std::vector<PathTask> PathRounds::wanting() const {
+std::vector<PathTask> AdaptiveSampling::wanting() const {
   std::vector<PathTask> wanting;
   if (by_rms()) {
     const std::vector<double> wanted = samples_by_rms();
@@ -63,7 +63,7 @@ std::vector<PathTask> PathRounds::wanting() const {
   return wanting;
 }
 
-std::vector<double> PathRounds::samples_by_rms() const {
+std::vector<double> AdaptiveSampling::samples_by_rms() const {
   std::vector<double> wanted(progress_.size()), weights(progress_.size(), 0.0);
   for (std::size_t r = 0; r < progress_.size(); ++r) {
     wanted[r] = progress_[r].samples;
@@ -88,13 +88,13 @@ std::vector<double> PathRounds::samples_by_rms() const {
   return wanted;
 }
 
-double PathRounds::rms_error() const {
+double AdaptiveSampling::rms_error() const {
   double squares = 0;
   for (std::size_t r = 0; r < progress_.size(); ++r) squares += relative_error(r) * relative_error(r);
   return std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, progress_.size())));
 }
 
-std::vector<PathTask> PathRounds::next(std::uint64_t rays_cast) const {
+std::vector<PathTask> AdaptiveSampling::next(std::uint64_t rays_cast) const {
   std::vector<PathTask> wanting = this->wanting();
   // As many as the remaining rays allow, worst first.
   std::stable_sort(wanting.begin(), wanting.end(),
@@ -111,7 +111,7 @@ std::vector<PathTask> PathRounds::next(std::uint64_t rays_cast) const {
   return wanting;
 }
 
-void PathRounds::judge_sharing(std::size_t receiver) {
+void AdaptiveSampling::judge_sharing(std::size_t receiver) {
   ReceiverProgress& one = progress_[receiver];
   if (one.samples < kSamplesToTellScatter) return;
   const double scatter = one.error_lx * one.error_lx * one.samples;
@@ -119,7 +119,7 @@ void PathRounds::judge_sharing(std::size_t receiver) {
   one.alone = one.alone || scatter > kMaxScatter * one.min_scatter;
 }
 
-void PathRounds::find_floor() {
+void AdaptiveSampling::find_floor() {
   std::vector<double> lux;
   for (const ReceiverProgress& one : progress_) lux.push_back(one.lux);
   floor_lx_ = error_floor_lx(options_, lux);
@@ -135,30 +135,30 @@ void PathRounds::find_floor() {
   }
 }
 
-double PathRounds::relative_error(std::size_t receiver) const {
+double AdaptiveSampling::relative_error(std::size_t receiver) const {
   const ReceiverProgress& one = progress_[receiver];
   const double scale_lx = std::max(one.lux, floor_lx_);
   const double own_lx = with_unfound_lx(one.error_lx, unfound_lx(receiver, brightest_lx_));
   return scale_lx > 0 ? std::hypot(own_lx, one.shared_error_lx) / scale_lx : 0;
 }
 
-double PathRounds::with_unfound_lx(double spread_lx, double unfound_lx) {
+double AdaptiveSampling::with_unfound_lx(double spread_lx, double unfound_lx) {
   return std::cbrt(spread_lx * spread_lx * spread_lx + unfound_lx * unfound_lx * unfound_lx);
 }
 
-double PathRounds::unfound_lx(std::size_t receiver, double brightest_lx) const {
+double AdaptiveSampling::unfound_lx(std::size_t receiver, double brightest_lx) const {
   const ReceiverProgress& one = progress_[receiver];
   const double paths = RecordBias::kReplicates * static_cast<double>(one.samples) * (one.alone ? 1 : ways_each_);
   return paths > 0 ? sends_on_ * brightest_lx / paths : 0;
 }
 
-double PathRounds::overshoot(std::size_t receiver) const {
+double AdaptiveSampling::overshoot(std::size_t receiver) const {
   const ReceiverProgress& one = progress_[receiver];
   if (one.error_lx == 0 && !one.found && one.samples < kSamplesToBelieveNothing) return HUGE_VAL;
   return relative_error(receiver) / options_.wanted_standard_error();
 }
 
-double PathRounds::done_after(const std::vector<PathTask>& round, double before) const {
+double AdaptiveSampling::done_after(const std::vector<PathTask>& round, double before) const {
   double spent = 0, left = 0;
   const double rms = by_rms() ? rms_error() / options_.wanted_standard_error() : 0;
   for (std::size_t r = 0; r < progress_.size(); ++r) {

@@ -1,4 +1,4 @@
-#include "core/transport/direct/lamps.h"
+#include "core/transport/direct/emitter_sampler.h"
 
 #include <fmt/format.h>
 
@@ -26,8 +26,8 @@ std::string text_of(const Vec3& v) { return fmt::format("({:g}, {:g}, {:g})", v.
 
 }  // namespace
 
-Lamps::Lamps(std::span<const Emitter> emitters, std::span<const double> levels,
-             const Eigen::AlignedBox3d& bounds_world_m, const SkyOpenings* openings)
+EmitterSampler::EmitterSampler(std::span<const Emitter> emitters, std::span<const double> levels,
+                               const Eigen::AlignedBox3d& bounds_world_m, const SkyOpenings* openings)
     : openings_(openings && !openings->empty() ? openings : nullptr) {
   if (!bounds_world_m.isEmpty()) {
     centre_world_m_ = bounds_world_m.center();
@@ -90,7 +90,7 @@ Lamps::Lamps(std::span<const Emitter> emitters, std::span<const double> levels,
   share_out();
 }
 
-void Lamps::form_cells(const Eigen::AlignedBox3d& bounds_world_m) {
+void EmitterSampler::form_cells(const Eigen::AlignedBox3d& bounds_world_m) {
   std::vector<LampProfile> profiles;
   WeighedLamps w;
   std::map<const IntensityDistribution*, std::uint32_t> profile_of;
@@ -118,7 +118,7 @@ void Lamps::form_cells(const Eigen::AlignedBox3d& bounds_world_m) {
   cells_ = LampCells(std::move(w), std::move(profiles), places_.size(), bounds_world_m);
 }
 
-void Lamps::form_groups() {
+void EmitterSampler::form_groups() {
   const auto skies = static_cast<std::size_t>(
       std::count_if(places_.begin(), places_.end(), [](const Site& p) { return p.kind == Kind::sky; }));
   const std::size_t luminaires = luminous_places_ = places_.size() - skies;
@@ -132,7 +132,7 @@ void Lamps::form_groups() {
   }
 }
 
-void Lamps::share_out() {
+void EmitterSampler::share_out() {
   double luminaires = 0;
   std::size_t skies = 0;
   for (const Site& place : places_)
@@ -160,7 +160,7 @@ void Lamps::share_out() {
   }
 }
 
-double Lamps::inward_share(const Lamp& lamp, const Site& place) const {
+double EmitterSampler::inward_share(const Lamp& lamp, const Site& place) const {
   if ((place.position_world_m - centre_world_m_).norm() <= radius_m_) return 1;
   constexpr std::uint32_t kProbes = 64;
   const SobolSequence probes(0x1a4b);
@@ -178,7 +178,7 @@ double Lamps::inward_share(const Lamp& lamp, const Site& place) const {
   return static_cast<double>(inward) / kProbes;
 }
 
-double Lamps::weigh(const Vec3& position_world_m, const Vec3& normal_world, Weights& weights) const {
+double EmitterSampler::weigh(const Vec3& position_world_m, const Vec3& normal_world, Weights& weights) const {
   weights.cell = &cells_.at(position_world_m);
   weights.places.assign(weights.cell->places.size(), 0.0);
   constexpr std::size_t kAtOnce = 32;
@@ -216,9 +216,9 @@ double Lamps::weigh(const Vec3& position_world_m, const Vec3& normal_world, Weig
   return sum;
 }
 
-LampChoice Lamps::choose(const Vec3& position_world_m, const Vec3& normal_world, const Weights& weights, double sum,
-                         double select, double u, double v) const {
-  LampChoice choice;
+EmitterChoice EmitterSampler::choose(const Vec3& position_world_m, const Vec3& normal_world, const Weights& weights,
+                                     double sum, double select, double u, double v) const {
+  EmitterChoice choice;
   if (!(sum > 0)) return choice;
   double left = select * sum, weight = 0;
   const auto taken = [&](std::size_t p, double lx) {
@@ -256,9 +256,9 @@ LampChoice Lamps::choose(const Vec3& position_world_m, const Vec3& normal_world,
   return choice;
 }
 
-LampChoice Lamps::ask_place(std::size_t which, double probability, const Vec3& position_world_m,
-                            const Vec3& normal_world, double u, double v) const {
-  LampChoice choice;
+EmitterChoice EmitterSampler::ask_place(std::size_t which, double probability, const Vec3& position_world_m,
+                                        const Vec3& normal_world, double u, double v) const {
+  EmitterChoice choice;
   choice.place = which;
   const Site& place = places_[which];
   if (place.kind == Kind::point) {
@@ -279,9 +279,9 @@ LampChoice Lamps::ask_place(std::size_t which, double probability, const Vec3& p
   return choice;
 }
 
-LampChoice Lamps::place_towards(std::size_t which, const Vec3& position_world_m, const Vec3& normal_world,
-                                const Vec3& direction_world) const {
-  LampChoice choice;
+EmitterChoice EmitterSampler::place_towards(std::size_t which, const Vec3& position_world_m, const Vec3& normal_world,
+                                            const Vec3& direction_world) const {
+  EmitterChoice choice;
   choice.place = which;
   const Site& place = places_[which];
   const Vec3 from_m = at_lamp_m(place, position_world_m);
@@ -293,8 +293,8 @@ LampChoice Lamps::place_towards(std::size_t which, const Vec3& position_world_m,
   return choice;
 }
 
-void Lamps::fill_in(LampChoice& choice, const Vec3& position_world_m, double distance_m, double density_per_sr,
-                    const Vec3& normal_world, const Vec3& direction_world) const {
+void EmitterSampler::fill_in(EmitterChoice& choice, const Vec3& position_world_m, double distance_m,
+                             double density_per_sr, const Vec3& normal_world, const Vec3& direction_world) const {
   const Site& place = places_[choice.place];
   const double cosine = normal_world.dot(direction_world);
   const double area_m2 = projected_area_m2(place.shape, -(place.world_from_lamp.transpose() * direction_world));
@@ -305,12 +305,12 @@ void Lamps::fill_in(LampChoice& choice, const Vec3& position_world_m, double dis
   choice.in_place = choice.density = density_per_sr;
 }
 
-Vec3 Lamps::beyond_world_m(const Vec3& position_world_m, const Vec3& direction_world) const {
+Vec3 EmitterSampler::beyond_world_m(const Vec3& position_world_m, const Vec3& direction_world) const {
   return position_world_m + (2 * radius_m_ + (position_world_m - centre_world_m_).norm()) * direction_world;
 }
 
-double Lamps::choice_density(std::size_t emitter, const Vec3& position_world_m, const Vec3& direction_world,
-                             const Weights& weights, double sum) const {
+double EmitterSampler::choice_density(std::size_t emitter, const Vec3& position_world_m, const Vec3& direction_world,
+                                      const Weights& weights, double sum) const {
   const std::size_t p = place_of_emitter_[emitter];
   const double probability = place_probability(p, weights, sum);
   if (!(probability > 0)) return 0;
@@ -320,20 +320,21 @@ double Lamps::choice_density(std::size_t emitter, const Vec3& position_world_m, 
   return probability * density_in_place(p, position_world_m, direction_world);
 }
 
-double Lamps::place_probability(std::size_t p, const Weights& weights, double sum) const {
+double EmitterSampler::place_probability(std::size_t p, const Weights& weights, double sum) const {
   const std::size_t slot = weights.cell->slot_of(p);
   const double weight = slot < weights.places.size() ? weights.places[slot] : weights.cell->rest_of(p);
   return weight > 0 ? weight / sum : 0;
 }
 
-double Lamps::density_in_place(std::size_t which, const Vec3& position_world_m, const Vec3& direction_world) const {
+double EmitterSampler::density_in_place(std::size_t which, const Vec3& position_world_m,
+                                        const Vec3& direction_world) const {
   const Site& place = places_[which];
   if (place.kind == Kind::point) return 1;
   return density_seen_from(place.shape, at_lamp_m(place, position_world_m),
                            place.world_from_lamp.transpose() * direction_world);
 }
 
-double Lamps::importance_cd(std::size_t which, const Vec3& leaving_world) const {
+double EmitterSampler::importance_cd(std::size_t which, const Vec3& leaving_world) const {
   const Site& place = places_[which];
   double candela = 0;
   for (std::size_t i = place.begin; i < place.end; ++i) {
@@ -344,7 +345,7 @@ double Lamps::importance_cd(std::size_t which, const Vec3& leaving_world) const 
   return candela;
 }
 
-double Lamps::place_share(std::size_t which) const {
+double EmitterSampler::place_share(std::size_t which) const {
   const Site& place = places_[which];
   double share = 0;
   for (std::size_t i = place.begin; i < place.end; ++i)
@@ -352,8 +353,8 @@ double Lamps::place_share(std::size_t which) const {
   return share;
 }
 
-LampRay Lamps::emit(std::size_t group, double u, double v, double s, double t) const {
-  LampRay ray;
+EmitterRay EmitterSampler::emit(std::size_t group, double u, double v, double s, double t) const {
+  EmitterRay ray;
   const auto begin = lamps_.begin() + static_cast<std::ptrdiff_t>(groups_[group].begin);
   const auto end = lamps_.begin() + static_cast<std::ptrdiff_t>(groups_[group].end);
   const auto after = std::upper_bound(begin, end, u, [](double at, const Lamp& lamp) { return at < lamp.share_begin; });

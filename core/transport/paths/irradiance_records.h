@@ -18,7 +18,7 @@
 
 namespace luxrig {
 
-class TailRecords {
+class IrradianceRecords {
  public:
   struct Vertex {
     Vec3 position_world_m;
@@ -50,7 +50,7 @@ class TailRecords {
   [[nodiscard]] std::span<const float> values(std::size_t record) const {
     return {values_.data() + record * columns_, columns_};
   }
-  /// The value that paths take: the same, averaged with the neighbours (SharedTails::blend).
+  /// The value that paths take: the same, averaged with the neighbours (IrradianceCache::blend).
   [[nodiscard]] std::span<float> told(std::size_t record) { return {told_.data() + record * columns_, columns_}; }
   [[nodiscard]] std::span<const float> told(std::size_t record) const {
     return {told_.data() + record * columns_, columns_};

@@ -1,6 +1,6 @@
 /// Light traced from the lamps, by group: its shares and the contents of the pools.
 
-#include "core/transport/paths/hit_pool.h"
+#include "core/transport/paths/light_vertex_pool.h"
 
 #include <gtest/gtest.h>
 
@@ -22,8 +22,8 @@ std::vector<Emitter> row_of_bulbs(std::size_t count, double flux_lm = 100) {
 TEST(LampGroups, SharesAddUpAndGroupsKeepTheFluxOfTheirLamps) {
   for (const std::size_t count : {1u, 7u, 64u, 65u, 1000u}) {
     const auto bulbs = row_of_bulbs(count);
-    const Lamps lamps(bulbs);
-    ASSERT_LE(lamps.groups(), Lamps::kMaxGroups);
+    const EmitterSampler lamps(bulbs);
+    ASSERT_LE(lamps.groups(), EmitterSampler::kMaxGroups);
     double shares = 0, all_lm = 0;
     std::vector<double> group_lm(lamps.groups(), 0.0);
     for (std::size_t e = 0; e < count; ++e) {
@@ -35,7 +35,7 @@ TEST(LampGroups, SharesAddUpAndGroupsKeepTheFluxOfTheirLamps) {
       EXPECT_NEAR(lamps.group_share(g), group_lm[g] / all_lm, 1e-12);
       // Whichever lamp of the group is drawn, the sample carries the flux of the whole group.
       for (const double u : {0.0, 0.31, 0.77, 0.999999}) {
-        const LampRay ray = lamps.emit(g, u, 0.4, 0, 0);
+        const EmitterRay ray = lamps.emit(g, u, 0.4, 0, 0);
         EXPECT_EQ(lamps.group_of(ray.emitter), g);
         EXPECT_NEAR(ray.flux_lm, group_lm[g], 1e-9 * group_lm[g]);
       }
@@ -53,8 +53,8 @@ TEST(LampGroups, WeighingFindsEveryLampThatLights) {
     turned << 1, 0, 0, 0, c, -s, 0, s, c;
     spots.push_back({make_spot(500, 0.3, 0.6), {turned, {0.01 * i - 1, 0.3, 2}}});
   }
-  const Lamps lamps(spots);
-  Lamps::Weights weights;
+  const EmitterSampler lamps(spots);
+  EmitterSampler::Weights weights;
   int lit = 0;
   for (double x = -1; x < 1; x += 0.21) {
     const Vec3 at_m(x, 0.2, 0.1), normal = Vec3(0.3, -0.2, 0.9).normalized();
@@ -68,15 +68,15 @@ TEST(LampGroups, WeighingFindsEveryLampThatLights) {
   EXPECT_GT(lit, 100);
 }
 
-TEST(HitPool, RefillsGoOnInTheSequenceAndKeepWholeNets) {
+TEST(LightVertexPool, RefillsGoOnInTheSequenceAndKeepWholeNets) {
   const RayScene rays(make_cube(2, 0.5));
   const auto bulbs = row_of_bulbs(2);
-  const Lamps lamps(bulbs, {}, rays.bounds_world_m());
+  const EmitterSampler lamps(bulbs, {}, rays.bounds_world_m());
   const auto bsdfs = bsdfs_of(rays);
-  const LightHits lights(rays, lamps, bsdfs);
-  Lamps::Weights weights;
+  const LightTracer lights(rays, lamps, bsdfs);
+  EmitterSampler::Weights weights;
   std::uint64_t cost = 0;
-  HitPool pool;
+  LightVertexPool pool;
   EXPECT_EQ(pool.refill(lights, 5, std::vector<std::uint32_t>{8, 0}, weights), 8u);
   EXPECT_EQ(pool.count(0), 8u);
   EXPECT_TRUE(pool.hits(1).empty());
@@ -90,17 +90,17 @@ TEST(HitPool, RefillsGoOnInTheSequenceAndKeepWholeNets) {
     EXPECT_EQ(pool.hits(1)[i].position_world_m, lights.trace(1, second, i, weights, cost).position_world_m);
 }
 
-TEST(HitPlan, StretchesHoldOnAverageWhatThePlanExpects) {
+TEST(LightVertexPlan, StretchesHoldOnAverageWhatThePlanExpects) {
   const RayScene rays(make_cube(2, 0.5));
   const auto bulbs = row_of_bulbs(5);
-  const Lamps lamps(bulbs, {}, rays.bounds_world_m());
+  const EmitterSampler lamps(bulbs, {}, rays.bounds_world_m());
   const auto bsdfs = bsdfs_of(rays);
-  Lamps::Weights weights;
-  HitPool pool;
-  pool.refill(LightHits(rays, lamps, bsdfs), 5, std::vector<std::uint32_t>(5, 64), weights);
+  EmitterSampler::Weights weights;
+  LightVertexPool pool;
+  pool.refill(LightTracer(rays, lamps, bsdfs), 5, std::vector<std::uint32_t>(5, 64), weights);
   constexpr std::uint32_t kPaths = 8;
   const std::vector<double> wanted = {0.9, 0.05, 0.03, 0.02, 0};
-  const HitPlan plan = HitPlan::of(lamps, wanted, 4 * kPaths, kPaths);
+  const LightVertexPlan plan = LightVertexPlan::of(lamps, wanted, 4 * kPaths, kPaths);
   EXPECT_EQ(plan.at_start[0] * kPaths, 32) << "28.8 hits, as a power of two";
   EXPECT_EQ(plan.at_start[1] * kPaths, 2);
   EXPECT_NEAR(plan.at_start[3] * kPaths, 0.64, 1e-12);
@@ -108,7 +108,7 @@ TEST(HitPlan, StretchesHoldOnAverageWhatThePlanExpects) {
   EXPECT_NEAR(std::accumulate(plan.deeper.begin(), plan.deeper.end(), 0.0), 1, 1e-12);
   EXPECT_GT(plan.deeper[4], 0) << "further vertices may see what the start does not";
   std::vector<double> counts(5, 0.0);
-  std::vector<HitStretch> stretches;
+  std::vector<LightVertexRange> stretches;
   constexpr int kDraws = 4000;
   for (int draw = 0; draw < kDraws; ++draw) {
     draw_stretches(plan, pool, kPaths, mixed(1, static_cast<std::uint64_t>(draw)), stretches);
@@ -124,10 +124,10 @@ TEST(HitPlan, StretchesHoldOnAverageWhatThePlanExpects) {
     EXPECT_NEAR(counts[g] / kDraws, plan.at_start[g] * kPaths, 0.05) << "group " << g;  // sd of a mean ≤ 0.008
 }
 
-TEST(HitPlan, WithoutWeightsGoesByTheLight) {
+TEST(LightVertexPlan, WithoutWeightsGoesByTheLight) {
   const auto bulbs = row_of_bulbs(3);  // 100, 200, 300 lm
-  const Lamps lamps(bulbs);
-  const HitPlan plan = HitPlan::of(lamps, std::vector<double>(3, 0.0), 1, 1);
+  const EmitterSampler lamps(bulbs);
+  const LightVertexPlan plan = LightVertexPlan::of(lamps, std::vector<double>(3, 0.0), 1, 1);
   EXPECT_NEAR(plan.at_start[0] + plan.at_start[1] + plan.at_start[2], 1, 1e-12);
   EXPECT_NEAR(plan.deeper[2], 0.5, 1e-12);
 }

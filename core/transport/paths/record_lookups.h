@@ -1,5 +1,5 @@
 #pragma once
-/// Stored ends of paths in tail records, to be looked up again when there are more records.
+/// Stored ends of paths in irradiance records, to be looked up again when there are more records.
 ///
 /// The first records are few and far apart. A path that took its light from one of them for good would keep that
 /// record's noise and distance. With stored ends, all paths get the light of the final records.
@@ -11,7 +11,7 @@
 
 namespace luxrig {
 
-struct TailEnd {
+struct RecordLookup {
   Vec3 position_world_m;
   Vec3f normal_world;
   Vec3f per_lux_rgb;        ///< weight of the reflected lux there at the path's start
@@ -20,13 +20,13 @@ struct TailEnd {
 };
 
 /// The ends of one receiver's paths in one replicate.
-struct TailEnds {
+struct RecordLookups {
   /// A path that continued beside its record, to measure the record's bias.
   struct Check {
     std::uint32_t end;
     float by_path_lx;  ///< luminous, at the levels
   };
-  std::vector<TailEnd> ends;
+  std::vector<RecordLookup> ends;
   std::vector<Check> checks;  ///< by `end`
 };
 
