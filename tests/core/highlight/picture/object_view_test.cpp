@@ -87,7 +87,7 @@ TEST(ObjectView, TheCameraThatSeesLooksFromTheWantedSide) {
   }
 }
 
-TEST(ObjectView, TheCameraThatSeesGoesRoundWhatStandsInTheWay) {
+TEST(ObjectView, TheCameraThatSeesAvoidsObstacles) {
   const std::vector<Vec3> shown = {Vec3(-1, -1, -1), Vec3(1, 1, 1)};
   const std::vector<Sight> wanted = {{Vec3(0, 0, 0)}};
   // A shown plate hides the middle from half of the sides. Walls nearer than anything shown do not, as they are left
