@@ -9,7 +9,7 @@
 namespace luxrig {
 namespace {
 
-TEST(DaylightAvailability, IsNothingFromTheHorizonDown) {
+TEST(DaylightAvailability, IsZeroFromTheHorizonDown) {
   for (const CloudCover cover : {CloudCover::clear, CloudCover::partly, CloudCover::overcast})
     for (const double altitude_rad : {0.0, -1e-9, -0.3, -kPi / 2}) {
       EXPECT_EQ(daylight_availability(cover, altitude_rad).sky_horizontal_lx, 0);

@@ -214,7 +214,7 @@ TEST(RayLeaks, ASheetCloseToALampOrAReceiverStopsItsLight) {
   }
 }
 
-TEST(RayLeaks, OneByOneAndManyAtOnceGiveTheSameAnswers) {
+TEST(RayLeaks, SingleAndBatchedRaysGiveTheSameAnswers) {
   Random random(5);
   int compared = 0, stopped = 0;
   for (int b = 0; b < 200; ++b) {
@@ -245,7 +245,7 @@ TEST(RayLeaks, OneByOneAndManyAtOnceGiveTheSameAnswers) {
   EXPECT_LT(stopped, compared * 9 / 10);
 }
 
-TEST(RayLeaks, NothingComesThroughAWallOfFifteenCentimetres) {
+TEST(RayLeaks, NoLightPassesAWallOfFifteenCentimetres) {
   Random random(6);
   int configurations = 0, leaks = 0;
   for (int b = 0; b < 200; ++b) {

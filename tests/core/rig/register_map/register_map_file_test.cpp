@@ -22,7 +22,7 @@ RegisterMap map_named(const char* name) {
   return *map;
 }
 
-TEST(RegisterMapFile, EveryShippedMapIsGoodAndSaysWhereItIsFrom) {
+TEST(RegisterMapFile, EveryShippedMapIsValidAndNamesItsSource) {
   std::size_t maps = 0;
   std::set<std::string> names;
   for (const auto& entry : std::filesystem::directory_iterator(kMaps)) {
@@ -62,7 +62,7 @@ TEST(RegisterMapFile, KnowsRelaysAndInputsOfOneBit) {
   EXPECT_EQ(map.registers[*input].access, RegisterAccess::read_only);
 }
 
-TEST(RegisterMapFile, SaysWhatABitCannotBe) {
+TEST(RegisterMapFile, ReportsSettingsThatABitCannotHave) {
   const std::string device = "[device]\nname = \"a\"\nsource = \"b\"\n[[register]]\nname = \"r\"\naddress = 1\n";
   const auto what_of = [&](const std::string& lines) {
     const auto map = parse_register_map(device + lines, "map.toml");
@@ -111,7 +111,7 @@ TEST(RegisterMapFile, KnowsTheLuxmetersTwoRegisters) {
 
 const std::string kHead = "[device]\nname = \"a\"\nsource = \"b\"\n";  // three lines
 
-TEST(RegisterMapFile, RefusesWhatCannotBeMeant) {
+TEST(RegisterMapFile, RefusesInvalidMaps) {
   const std::vector<std::pair<std::string, std::string>> bad = {
       {"", "map.toml:1:1: there is no [device]"},
       {"[device]\nname = \"a\"\n", "map.toml:1:1: [device] has no \"source\""},
@@ -199,7 +199,7 @@ TEST(RegisterMapFile, ChangingAnyKeyChangesTheMap) {
   }
 }
 
-TEST(RegisterMapFile, IsNoRigFileNorTheOtherWayRound) {
+TEST(RegisterMapFile, AndRigFileAreNotInterchangeable) {
   const auto map = parse_register_map(kHead + "[[fixture]]\n", "map.toml");
   ASSERT_FALSE(map);
   EXPECT_NE(map.error()[0].what.find("unknown section \"fixture\" in a register map"), std::string::npos);

@@ -107,7 +107,7 @@ TEST_F(MeshFiles, ATriangleOfObjKeepsItsPlaceUnitAndMaterial) {
   EXPECT_FALSE(scene->materials[scene->material_of_triangle[2]].coloured);
 }
 
-TEST_F(MeshFiles, TurnsEveryUpAxisToZKeepingItRightHanded) {
+TEST_F(MeshFiles, ConvertsEveryUpAxisToZWithoutMirroring) {
   const std::string text = "v 0 0 0\nv 1 0 0\nv 0 2 0\nv 0 0 3\nf 1 2 3\nf 1 3 4\nf 1 4 2\n";
   const auto corner = [&](UpAxis up, std::size_t vertex) {
     const auto scene = load("up.obj", text, up);
@@ -158,7 +158,7 @@ TEST_F(MeshFiles, OpensNothingOutsideTheFolderOfTheMesh) {
   EXPECT_FALSE(load("inside/d.gltf", triangle_gltf(node, (folder_ / "outside.bin").string())).has_value());
 }
 
-TEST_F(MeshFiles, CountsWhatItCleansAndKeepsTheRest) {
+TEST_F(MeshFiles, CountsCleanedTrianglesAndKeepsTheRest) {
   std::string bytes =
       "ply\nformat binary_little_endian 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\n"
       "element face 5\nproperty list uchar int vertex_indices\nend_header\n";
@@ -180,7 +180,7 @@ TEST_F(MeshFiles, CountsWhatItCleansAndKeepsTheRest) {
   for (const auto& vertex : scene->vertices_m) EXPECT_TRUE(vertex.allFinite());
 }
 
-TEST_F(MeshFiles, KeepsThinTrianglesOfAScanFarFromItsOrigin) {
+TEST_F(MeshFiles, KeepsThinTrianglesFarFromTheOrigin) {
   const auto scene = load("thin.obj", "v 1000 0 0\nv 1001 0 0\nv 1000.5 0.001 0\nf 1 2 3\n");
   ASSERT_TRUE(scene.has_value());
   EXPECT_EQ(scene->cleaning.total(), 0u);
@@ -191,7 +191,7 @@ struct Broken {
   std::string bytes;
 };
 
-TEST_F(MeshFiles, RefusesWhatIsNoMeshWithAProblem) {
+TEST_F(MeshFiles, RefusesInvalidMeshesWithAProblem) {
   const std::string ply = sheet_ply(4);
   std::string huge = ply;
   huge.replace(huge.find("element face 32"), 15, "element face 60000000");

@@ -44,7 +44,7 @@ TEST(LampGroups, SharesAddUpAndGroupsKeepTheFluxOfTheirLamps) {
   }
 }
 
-TEST(LampGroups, WeighingFindsEveryLampThatLights) {
+TEST(LampGroups, WeightsIncludeEveryLampThatLights) {
   // Spots whose beam just reaches or just misses a point. A weight of zero where there is light would cause bias.
   std::vector<Emitter> spots;
   for (int i = 0; i < 200; ++i) {
@@ -68,7 +68,7 @@ TEST(LampGroups, WeighingFindsEveryLampThatLights) {
   EXPECT_GT(lit, 100);
 }
 
-TEST(HitPool, RefillsGoOnInTheSequenceAndKeepWholeNets) {
+TEST(HitPool, RefillsContinueTheSequenceInWholeNets) {
   const RayScene rays(make_cube(2, 0.5));
   const auto bulbs = row_of_bulbs(2);
   const Lamps lamps(bulbs, {}, rays.bounds_world_m());
@@ -90,7 +90,7 @@ TEST(HitPool, RefillsGoOnInTheSequenceAndKeepWholeNets) {
     EXPECT_EQ(pool.hits(1)[i].position_world_m, lights.trace(1, second, i, weights, cost).position_world_m);
 }
 
-TEST(HitPlan, StretchesHoldOnAverageWhatThePlanExpects) {
+TEST(HitPlan, StretchesHoldTheExpectedHitsOnAverage) {
   const RayScene rays(make_cube(2, 0.5));
   const auto bulbs = row_of_bulbs(5);
   const Lamps lamps(bulbs, {}, rays.bounds_world_m());
@@ -124,7 +124,7 @@ TEST(HitPlan, StretchesHoldOnAverageWhatThePlanExpects) {
     EXPECT_NEAR(counts[g] / kDraws, plan.at_start[g] * kPaths, 0.05) << "group " << g;  // sd of a mean ≤ 0.008
 }
 
-TEST(HitPlan, WithoutWeightsGoesByTheLight) {
+TEST(HitPlan, FollowsTheFluxWithoutWeights) {
   const auto bulbs = row_of_bulbs(3);  // 100, 200, 300 lm
   const Lamps lamps(bulbs);
   const HitPlan plan = HitPlan::of(lamps, std::vector<double>(3, 0.0), 1, 1);
