@@ -63,7 +63,7 @@ TEST(SceneBuilder, AnEmptyRigGivesAnEmptyScene) {
   EXPECT_TRUE(RayScene(*scene).bounds_world_m().isEmpty());
 }
 
-TEST(SceneBuilder, PutsTheRoomWhereItsFileSays) {
+TEST(SceneBuilder, PlacesTheRoomAsItsFileStates) {
   const auto scene = build_scene(rig_with_room());
   ASSERT_TRUE(scene.has_value());
   EXPECT_EQ(scene->triangles.size(), 12u);
@@ -163,7 +163,7 @@ TEST(SceneBuilder, GivesGlossByTheRuleThatGivesTheReflectance) {
   EXPECT_EQ(own, 1);
 }
 
-TEST(SceneBuilder, FallsBackToTheDefaultAndClampsWhatNoPaintReaches) {
+TEST(SceneBuilder, FallsBackToTheDefaultAndClampsImpossibleReflectances) {
   Rig rig = rig_with_room();
   rig.scene.default_reflectance_rgb = Vec3::Constant(0.33);
   rig.scene.reflectances = {{"wall", Vec3::Constant(1.0), {8, 1}}};
@@ -174,7 +174,7 @@ TEST(SceneBuilder, FallsBackToTheDefaultAndClampsWhatNoPaintReaches) {
   EXPECT_TRUE(warns_of(*scene, "material 'wall': reflectance above 0.95"));
 }
 
-TEST(SceneBuilder, NamesTheMaterialWhoseColourTheFileStatesTooBrightUnlessTheRigStatesIt) {
+TEST(SceneBuilder, NotesAMaterialColourTooBrightUnlessTheRigStatesIt) {
   std::string name = (std::filesystem::temp_directory_path() / "luxrig-builder-XXXXXX").string();
   const std::filesystem::path folder = mkdtemp(name.data());
   std::ofstream(folder / "p.mtl") << "newmtl snow\nKd 1 1 1\nnewmtl idle\nKd 1 1 1\n";
