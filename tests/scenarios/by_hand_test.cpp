@@ -6,7 +6,7 @@
 namespace luxrig::scenarios {
 namespace {
 
-TEST(ByHandInTheHall, ALevelStaysTheOtherGoalsAreMetAndNoLimitBreaksForTenSeeds) {
+TEST(ByHandInTheHall, KeepsALevelMeetsOtherGoalsAndHoldsLimitsForTenSeeds) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     ClosedLoop loop(make_hall(seed), seeded(seed));
     if (seed % 2 == 0) loop.solve_late(1.5);
@@ -30,7 +30,7 @@ TEST(ByHandInTheHall, ALevelStaysTheOtherGoalsAreMetAndNoLimitBreaksForTenSeeds)
   }
 }
 
-TEST(ByHandInTheHall, FullByHandUnderALimitIsAsMuchAsTheLimitLeavesAtEveryInstant) {
+TEST(ByHandInTheHall, FullLevelsByHandGiveAsMuchAsALimitAllows) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     ClosedLoop loop(make_hall(seed), seeded(seed));
     if (seed % 2 == 0) loop.solve_late(1.5);
@@ -49,7 +49,7 @@ TEST(ByHandInTheHall, FullByHandUnderALimitIsAsMuchAsTheLimitLeavesAtEveryInstan
   }
 }
 
-TEST(ByHandInTheHall, AGoalSetByHandIsCorrectedToAndTheReleaseGoesBack) {
+TEST(ByHandInTheHall, AGoalSetByHandIsMetAndItsReleaseRestoresTheOriginal) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     ClosedLoop loop(make_hall(seed), seeded(seed));
     if (seed % 2 == 0) loop.solve_late(1.5);

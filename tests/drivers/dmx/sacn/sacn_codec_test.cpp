@@ -67,7 +67,7 @@ TEST(SacnCodec, CutsALongNameAtACharacterAndEndsItWithNul) {
   EXPECT_EQ(bytes[44 + 63], 0);
 }
 
-TEST(SacnCodec, HearsASourceThatFillsTheWholeNameField) {
+TEST(SacnCodec, AcceptsASourceNameThatFillsItsField) {
   Bytes bytes = encode(full_packet());
   std::fill_n(bytes.begin() + 44, 64, 'x');
   const auto packet = decode(bytes);
@@ -75,7 +75,7 @@ TEST(SacnCodec, HearsASourceThatFillsTheWholeNameField) {
   EXPECT_EQ(packet->source_name, std::string(64, 'x'));
 }
 
-TEST(SacnCodec, ReadsBackWhatItWrites) {
+TEST(SacnCodec, RoundTrips) {
   DataPacket packet = full_packet();
   packet.universe = 63999;
   packet.priority = 200;
@@ -124,7 +124,7 @@ TEST(SacnCodec, RefusesUniverseZeroAndPriority201) {
   EXPECT_FALSE(decode(bytes));
 }
 
-TEST(SacnCodec, KnowsTheGroupOfAUniverse) {
+TEST(SacnCodec, GivesTheMulticastGroupOfAUniverse) {
   EXPECT_EQ(multicast_group(1), 0xEFFF0001u);      // 239.255.0.1
   EXPECT_EQ(multicast_group(63999), 0xEFFFF9FFu);  // 239.255.249.255
 }
