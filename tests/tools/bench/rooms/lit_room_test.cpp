@@ -65,7 +65,7 @@ TEST_P(LitRooms, AreBuiltOfClosedSolids) {
   for (const auto& [edge, count] : walked) ASSERT_EQ(count, 0);
 }
 
-TEST_P(LitRooms, LetNoRayOutWhenTheyAreClosed) {
+TEST_P(LitRooms, LetNoRayOutWhenClosed) {
   const LitRoom room = GetParam().make(1);
   const RayScene rays(room.scene);
   std::mt19937_64 random(7);
