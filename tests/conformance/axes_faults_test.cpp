@@ -119,7 +119,7 @@ TEST(Axes, ANewAimReplacesTheCurrentOne) {
   EXPECT_LT(furthest, 100);
 }
 
-TEST(Axes, AMovingAxisBrakesToANearAimAsFastAsItsLimitsAllow) {
+TEST(Axes, AMovingAxisBrakesForANearAimAtItsLimit) {
   AxesBench bench;
   bench.aim = AxesBench::deg(0, 0);
   ASSERT_TRUE(bench.arrive());

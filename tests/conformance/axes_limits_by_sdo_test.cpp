@@ -43,7 +43,7 @@ void rest_at(AxesBench& bench, const Joints& aim) {
 
 class LimitsBySdo : public ::testing::TestWithParam<int> {};
 
-TEST_P(LimitsBySdo, ADriveThatRefusesTheMappingMovesInStepWithOneThatAcceptsIt) {
+TEST_P(LimitsBySdo, ADriveThatRefusesTheMappingMovesInStepWithTheOther) {
   AxesBench bench;
   bench.faults.set(kTiltAxis, FaultKind::unmappable, true, GetParam());
   const Joints from = AxesBench::deg(-20, 15), to = AxesBench::deg(100, -45);

@@ -104,7 +104,7 @@ TEST(AxesThatLie, AnEncoderThatLostItsCountIsHomedAgain) {
   EXPECT_TRUE(bench.arrive(60)) << bench.health(1).detail;
 }
 
-TEST(AxesThatLie, AnEncoderThatLostItsCountWaitsForAPersonWhenHomingIsForbidden) {
+TEST(AxesThatLie, AnEncoderThatLostItsCountNeedsAPersonIfHomingIsForbidden) {
   AxesBench bench(rig_of_axes({{"home", std::string("never")}}));
   bench.aim = AxesBench::deg(5, 5);
   bench.run(4);

@@ -121,7 +121,7 @@ TEST(PersonalityOnTheWire, EmittersAreMixedIndividually) {
   }
 }
 
-TEST(PersonalityOnTheWire, AShutShutterAStrobeAndALampThatIsOffAreDark) {
+TEST(PersonalityOnTheWire, AClosedShutterAStrobeAndAnUnstruckLampAreDark) {
   const Rig rig = rig_of("Clay Paky@Alpha Spot QWO 800.gdtf", "Standard Mode (32 ch)");
   DmxPatchbay bay(rig, 0);
   const LevelCommand full[] = {{0, 1.0}};

@@ -262,7 +262,7 @@ TEST(UdmxDriver, CountsAStallAndSendsTheLevelsAgain) {
   EXPECT_EQ(u.bench.cable.closed, 0);
 }
 
-TEST(UdmxDriver, ThreeOtherErrorsInARowMeanALostDeviceAndTwoDoNot) {
+TEST(UdmxDriver, CountsADeviceAsLostAfterThreeOtherErrorsInARow) {
   UdmxBench u;
   u.bench.cycles(5, 0.5);
   u.bench.cable.failures = 2;

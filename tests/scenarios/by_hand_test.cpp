@@ -73,7 +73,7 @@ TEST(ByHandInTheHall, AGoalSetByHandIsMetAndItsReleaseRestoresTheOriginal) {
 }
 
 // A rig file read again: the light goes on, limits hold, and the new goals apply.
-TEST(ByHandInTheHall, AnExchangedRigFadesToItsNewGoalsWithinItsNewLimits) {
+TEST(ByHandInTheHall, AReplacedRigFadesToItsNewGoalsWithinItsNewLimits) {
   for (const bool same_light : {true, false}) {
     ClosedLoop loop(make_hall(3), seeded(3));
     loop.apply();

@@ -6,7 +6,7 @@
 namespace luxrig::scenarios {
 namespace {
 
-TEST(Show, BringsEveryMeteredGoalWithinThreePercentAndNeverExceedsALimitForFiftySeeds) {
+TEST(Show, MeetsMeteredGoalsWithinThreePercentAndKeepsLimitsForFiftySeeds) {
   double worst_error = 0, worst_share = 0, longest_s = 0;
   int max_rounds = 0;
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {

@@ -15,7 +15,7 @@ bool only_alarm_is_of(const ClosedLoop& loop, const std::string& device) {
 }
 
 /// Works have meters, which watch their limits.
-TEST(FailureDomain, ADeadBusOfDimmersTakesItsLampsToTheSafeLookAndTheOthersStay) {
+TEST(FailureDomain, ADeadDimmerBusSendsOnlyItsLampsToTheSafeLook) {
   ClosedLoop loop(make_hall(31), seeded(31));
   loop.apply();
   ASSERT_TRUE(loop.run_until(Phase::holding, 30)) << loop.describe();

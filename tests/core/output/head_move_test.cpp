@@ -64,7 +64,7 @@ TEST(HeadMove, BothAxesArriveTogetherOnAStraightLineWithinTheirLimits) {
   }
 }
 
-TEST(HeadMove, AHeadThatStaysTakesNoTime) {
+TEST(HeadMove, AnAxisThatStaysTakesNoTime) {
   const HeadMove move = head_move(0, 0, {10, 10}, {10, 10});
   EXPECT_EQ(move.seconds, 0);
   EXPECT_EQ(move.pan.speed, 0);

@@ -78,7 +78,7 @@ TEST(FadeShare, RisesFromZeroToOneAndIsExactAtTheEnds) {
   EXPECT_DOUBLE_EQ(fade_share(FadeCurve::s_curve, 0.25), 3 * 0.0625 - 2 * 0.015625);
 }
 
-TEST(DimmerCurve, RisesAndItsInverseGivesTheLevelBack) {
+TEST(DimmerCurve, RisesAndItsInverseReturnsTheLevel) {
   for (const DimmerCurve curve : {DimmerCurve::linear, DimmerCurve::square, DimmerCurve::s_curve}) {
     for (const double end : {0.0, 1.0}) {
       EXPECT_EQ(level_from_drive(curve, end), end);
@@ -236,7 +236,7 @@ TEST(OutputProgram, IsDarkAtOnceInABlackout) {
   }
 }
 
-TEST(OutputProgram, GivesDarkNeverNaNForDegenerateInput) {
+TEST(OutputProgram, GivesDarknessNeverNaNForDegenerateInput) {
   const double nan = std::nan("");
   OutputProgram program;
   program.from_level = {nan, 1, -1, 1, kInfinity, 1};

@@ -26,7 +26,7 @@ TEST(DaylightAvailability, HasTheFiguresOfTheRecommendedPractice) {
   EXPECT_EQ(daylight_availability(CloudCover::overcast, kPi / 6).sun_normal_lx, 0);
 }
 
-TEST(DaylightAvailability, GrowsWithTheSunsHeightAndNeverPassesTheSunAboveTheAir) {
+TEST(DaylightAvailability, GrowsWithTheSunsHeightAndStaysBelowTheExtraterrestrialSun) {
   for (const CloudCover cover : {CloudCover::clear, CloudCover::partly, CloudCover::overcast}) {
     DaylightAvailability before;
     for (int step = 1; step <= 90; ++step) {

@@ -209,7 +209,7 @@ TEST(IesSymmetry, HalfFilesAreMirroredAboutThePlaneTheyEndOn) {
   EXPECT_NEAR(about_90->intensity_cd(direction(90, 225)), 35, 1e-9);
 }
 
-TEST(IesSymmetry, PlanesThatStopOneShortOf360AreClosed) {
+TEST(IesSymmetry, ClosesPlanesThatStopOneShortOf360) {
   const Intensity light = intensity_of(file_text({0, 90}, {0, 120, 240}, {10, 20, 10, 30, 10, 40}));
   EXPECT_NEAR(light->intensity_cd(direction(90, 300)), 30, 1e-9);
   EXPECT_NEAR(light->intensity_cd(direction(90, 360)), 20, 1e-9);

@@ -46,7 +46,7 @@ Vec3 direction_a(double y_deg, double x_deg) {
   return {std::cos(y) * std::sin(x), std::sin(y), -std::cos(y) * std::cos(x)};
 }
 
-TEST(IesTypeB, HasItsBeamAtTheNadirVerticalAnglesTowardsXAndHorizontalOnesClockwise) {
+TEST(IesTypeB, HasItsBeamAtTheNadirWithVerticalTowardsXAndHorizontalClockwise) {
   const std::vector<double> angles{-90, -45, 0, 45, 90};
   std::vector<double> candela(25, 0.0);
   for (std::size_t i = 0; i < 25; ++i) candela[i] = 100.0 + static_cast<double>(i);
@@ -64,7 +64,7 @@ TEST(IesTypeB, HasItsBeamAtTheNadirVerticalAnglesTowardsXAndHorizontalOnesClockw
   }
 }
 
-TEST(IesTypeA, HasItsBeamAlongTheLampsAxisVerticalAnglesTowardsYAndHorizontalOnesTowardsX) {
+TEST(IesTypeA, HasItsBeamOnTheLampAxisWithVerticalAlongYAndHorizontalAlongX) {
   const std::vector<double> vertical{-90, -30, 0, 30, 90};
   const std::vector<double> horizontal{-90, 0, 60, 90};
   std::vector<double> candela(20);

@@ -72,7 +72,7 @@ double integrated_lm(const IntensityDistribution& of) {
   return sum * (kPi / kRings) * (2 * kPi / kSpokes);
 }
 
-TEST(PhotometricFiles, LoadWithTheFluxOfTheirCatalogueOrAreRefusedForAReason) {
+TEST(PhotometricFiles, LoadWithTheirCatalogueFluxOrAreRefusedWithAReason) {
   std::set<std::string> seen;
   for (const auto& entry : std::filesystem::directory_iterator(folder())) {
     const std::string name = entry.path().filename().string();
@@ -126,7 +126,7 @@ TEST_F(NamedWrongly, CapitalsInAnExtensionAreAccepted) {
   }
 }
 
-TEST(PhotometricFiles, AreReadByTheirExtension) {
+TEST(PhotometricFiles, LoadInBothFormatsAndRefuseOthers) {
   const auto ldt = load_photometric_file(folder() / "sample9.ldt");
   ASSERT_TRUE(ldt.has_value());
   EXPECT_DOUBLE_EQ(ldt->input_w, 75);

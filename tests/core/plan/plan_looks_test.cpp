@@ -18,7 +18,7 @@ Rig rig_with_a_head() {
   return rig;
 }
 
-TEST(Plan, TurnsHeadsAndNothingElse) {
+TEST(Plan, TurnsOnlyHeads) {
   const Rig rig = rig_with_a_head();
   Plan plan = plan_for_two(0.5, 0.25);
   for (PlannedLight& light : plan.tasks[0].lights) light.joints = Joints{rad_from_deg(90), rad_from_deg(-45)};

@@ -266,7 +266,7 @@ TEST(Plan, UsesTheLastTaskThatNamesAFixture) {
   EXPECT_EQ(*levels, (std::vector<double>{0.75, 0.5}));
 }
 
-TEST(Plan, IsRefusedForAnotherRigOrWithLevelsThatTheRigCannotGive) {
+TEST(Plan, IsRefusedForAnotherRigOrWithImpossibleLevels) {
   const Rig rig = two_fixture_rig();
   Plan other = plan_for_two(0.5, 0.5);
   other.rig = "hall";
@@ -340,7 +340,7 @@ TEST(Plan, KeepsTheResultOfAPlacement) {
   EXPECT_FALSE(read->tasks[0].lower_bound);
 }
 
-TEST(Plan, IsRefusedWithARemedyWhileItsLightsDoNotHangYet) {
+TEST(Plan, IsRefusedWithARemedyWhileItsLightsAreUnhung) {
   const auto levels = levels_for(plan_that_places(), rig_with_a_bulb(), "plan.json");
   ASSERT_FALSE(levels);
   ASSERT_EQ(levels.error().size(), 1u);
@@ -437,7 +437,7 @@ TEST(Plan, CarriesPowerAndColour) {
 }
 
 // The person who hangs lamps is given the lamp's name, not that of an emitter.
-TEST(Plan, NamesTheHousingOfEmittersThatDoNotHangYet) {
+TEST(Plan, NamesTheHousingOfUnhungEmitters) {
   Rig rig = two_fixture_rig();
   rig.luminaires.resize(2);
   rig.luminaires[0].name = "par";

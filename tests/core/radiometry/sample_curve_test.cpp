@@ -19,7 +19,7 @@ TEST(SampleCurve, FollowsPublishedValuesOfSrgbAndBt709) {
   EXPECT_NEAR(bt709.light(0.5), 0.25959, 2e-5);
 }
 
-TEST(SampleCurve, HasNoLightAtTheDarkLevelAndLessBelow) {
+TEST(SampleCurve, IsZeroAtTheDarkLevelAndNegativeBelow) {
   const SampleCurve linear = SampleCurve::linear(0.05);
   EXPECT_NEAR(linear.light(0.05), 0, 1e-15);
   EXPECT_NEAR(linear.light(0.525), 0.5, 1e-12);

@@ -150,7 +150,7 @@ TEST(Moment, RefusesInvalidTimes) {
     EXPECT_FALSE(utc_time(text)) << text;
 }
 
-TEST(Moment, KnowsItsDayOfTheYear) {
+TEST(Moment, GivesItsDayOfTheYear) {
   EXPECT_EQ(day_of_year({2026, 1, 1, 0}), 1);
   EXPECT_EQ(day_of_year({2026, 12, 31, 0}), 365);
   EXPECT_EQ(day_of_year({2024, 12, 31, 0}), 366);

@@ -30,7 +30,7 @@ Pose random_mount(std::mt19937& random) {
   return {q.normalized().toRotationMatrix(), Vec3(normal(random), normal(random), normal(random)) * 10};
 }
 
-TEST(Frames, BeamFollowsTheFormulaOfTheHeader) {
+TEST(Frames, BeamFollowsTheDocumentedFormula) {
   for (double pan = -3; pan < 3; pan += 0.37) {
     for (double tilt = -2; tilt < 2; tilt += 0.29) {
       const Vec3 expected(-std::sin(pan) * std::sin(tilt), std::cos(pan) * std::sin(tilt), -std::cos(tilt));

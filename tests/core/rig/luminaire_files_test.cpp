@@ -65,7 +65,7 @@ TEST(GldfFiles, AreRefusedWithTheirNamesWithoutAChoice) {
   EXPECT_NE(linked.find("not in the file, but at \"https://example.org/far.ies\""), std::string::npos) << linked;
 }
 
-TEST(GldfFiles, NeedNoChoiceWhereAllVariantsShineAlike) {
+TEST(GldfFiles, NeedNoChoiceBetweenEqualVariants) {
   const auto file = load_luminaire_file(luminaire_data() / "colours.gldf");
   ASSERT_TRUE(file.has_value()) << refusal_of(file);
   EXPECT_NEAR(flux_lm(file), 1800, 1e-9);

@@ -223,7 +223,7 @@ TEST(RigFile, TurnsABaseAsTheReferenceStates) {
   EXPECT_LT((rolled->fixtures[0].world_from_lamp().direction(-Vec3::UnitZ()) + Vec3::UnitX()).norm(), 1e-12);
 }
 
-TEST(RigFile, AStandingHeadReachesWhatAHangingOneCannot) {
+TEST(RigFile, AStandingHeadReachesAimsThatAHangingOneCannot) {
   const std::string mover = "address = 1\nslots = [\"pan\", \"tilt\", \"dimmer\"]\naim_m = [0.1, 0, 9]";
   EXPECT_FALSE(parse(kSmall + fixture("a", mover)));
   const Checked<Rig> rig = parse(kSmall + fixture("a", mover + "\nmount_deg = [0, 180, 0]"));

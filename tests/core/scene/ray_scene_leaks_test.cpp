@@ -178,7 +178,7 @@ TEST(RayLeaks, ALampInAnEmptyBoxReachesEveryPointOfItsWalls) {
   EXPECT_EQ(shaded_many, 0);
 }
 
-TEST(RayLeaks, ASheetCloseToALampOrAReceiverStopsItsLight) {
+TEST(RayLeaks, ASheetCloseToALampOrAReceiverBlocksItsLight) {
   // A sheet 4 e or more before the lamp, or 8 e off the receiver's surface, at any slant. When shadow rays just stopped
   // short, a third of a millimetre was overlooked.
   Random random(4);

@@ -201,7 +201,7 @@ TEST(ShowController, StaysSafeOnRequestUntilTheNextPlan) {
   EXPECT_EQ(small.status().phase, Phase::holding);
 }
 
-TEST(ShowController, KeepsTheSafeLookWithinTheLimitsToo) {
+TEST(ShowController, KeepsTheSafeLookWithinTheLimits) {
   SmallShow small;
   small.rig.safe.level = 0.9;
   small.rig.fixtures[1].safe_level = 0.05;
@@ -316,7 +316,7 @@ struct TurningShow : SmallShow {
   }
 };
 
-TEST(ShowController, LightsNothingUntilItsHeadsCanHaveTurned) {
+TEST(ShowController, LightsNothingUntilItsHeadsMustHaveTurned) {
   TurningShow small;
   small.start().apply(small.now(), std::vector<double>{0.3, 0.3});
   // From either end of 360° to the middle: two seconds, plus half a second until it moves.
@@ -331,7 +331,7 @@ TEST(ShowController, LightsNothingUntilItsHeadsCanHaveTurned) {
   small.run_until(Phase::holding);
 }
 
-TEST(ShowController, WaitsForAZoomAsForPanAndTilt) {
+TEST(ShowController, WaitsForAZoomLikeForPanAndTilt) {
   TurningShow small;
   Fixture& head = small.rig.fixtures[1];
   head.range.beam_min_rad = 0.1;

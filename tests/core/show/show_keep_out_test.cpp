@@ -161,7 +161,7 @@ TEST(ShowKeepOut, AHeadGoesDarkBeforeCrossingAZoneAndIsRelitAfterwards) {
   EXPECT_EQ(small.show.status(at(small.now_s)).fixtures[0].waits_for, "");
 }
 
-TEST(ShowKeepOut, AMoveThatPassesTheZoneStaysLit) {
+TEST(ShowKeepOut, AMoveThatMissesTheZoneStaysLit) {
   Stage small(stage());
   ASSERT_EQ(small.show.add_desk({DeskMode::takeover, HandBack::at_once}, {"desk", {0}}), 0u);
   small.desk(1, {kTowardsTheZone_rad + 1.6, 1, 0});
@@ -204,7 +204,7 @@ TEST(ShowKeepOut, OwnMovesStayDarkAndTheSafeLookLightsNoZone) {
   EXPECT_EQ(small.level(), 0);
 }
 
-TEST(ShowKeepOut, IdentifyBlinksWhereANodWouldReachTheZone) {
+TEST(ShowKeepOut, IdentifyBlinksInsteadOfNoddingIntoTheZone) {
   for (const bool near : {false, true}) {
     Rig rig = stage();
     // The edge of the zone is some degrees further on.

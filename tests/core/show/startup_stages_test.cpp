@@ -115,7 +115,7 @@ TEST(StartupStages, NoSecondAddsMoreWattsThanAllowed) {
   }
 }
 
-TEST(StartupStages, ADeskIsStagedToo) {
+TEST(StartupStages, ADesksLevelsAreStagedToo) {
   StartingShow small;
   small.rig.startup.stage_s = 5;
   small.start();

@@ -111,7 +111,7 @@ class StopsAt {
   std::stop_source person_;
 };
 
-TEST_F(AimTask, TurnsHeadsThatLookPastAnObjectTowardsIt) {
+TEST_F(AimTask, TurnsHeadsTowardsAnObjectTheyMiss) {
   const Session session = well(std::string(kWellRig) + kAim);
   const SolvedTasks solved = solved_of(session, direct_light());
   const Eigen::VectorXd levels = levels_of(solved);
@@ -188,7 +188,7 @@ TEST_F(AimTask, KeepsRecessesWithinTheObjectLimitIncludingReflections) {
   EXPECT_GT(all.max_recessed_lx(), 1.1 * direct.max_recessed_lx()) << "the walls give something";
 }
 
-TEST_F(AimTask, GivesAnEyeNoMoreDirectLightThanItMayHave) {
+TEST_F(AimTask, KeepsTheDirectLightLimitOfAnEye) {
   // An eye on the line from the left head to the well, with nothing that would hide it.
   const Vec3 eye = (Vec3(-1.2, 0.3, 2.8) + kWellMiddle) / 2;
   const std::string point = fmt::format("[[point]]\nname = \"eye\"\nposition_m = [{}, {}, {}]\nnormal = [0, 0, 1]\n",
@@ -412,7 +412,7 @@ TEST_F(HighlightTask, IsRefusedWhenLightsCanHangNowhere) {
   EXPECT_TRUE(said.ends_with("widen box_m or offset_m of [mounting], or lower clearance_m")) << said;
 }
 
-TEST_F(HighlightTask, IsRefusedWhenNoLightThatMayHangReachesTheRelief) {
+TEST_F(HighlightTask, IsRefusedWhenNoPossibleLightReachesTheRelief) {
   const std::string lid = "[[scene.object]]\nname = \"lid\"\nbox_m = [3, 3, 0.02]\nposition_m = [0, 0, 1.12]\n";
   const std::string said = refusal_of(replaced(kWellRig, "[0.35, 0, 1.1]", "[0.35, 0, 1.3]") + lid + kHighlight);
   EXPECT_TRUE(said.starts_with("task \"detail\": no shadow edge of the target can be lit from the light domain"))

@@ -156,7 +156,7 @@ TEST_F(RigNotes, APointRightBehindAWallIsNoted) {
                   "its goal is 300 lx", "move it along its normal"});
 }
 
-TEST_F(RigNotes, APointThatLooksAtAWallACentimetreAwayIsNoted) {
+TEST_F(RigNotes, APointFacingAWallACentimetreAwayIsNoted) {
   rig.points[2].position_world_m = Vec3(5.99, 2.5, 1.5);
   rig.points[2].normal_world = Vec3::UnitX();
   expect_one(22, {"point \"desk 3\" faces", "10.0 mm before it", "turn its normal"});
@@ -239,7 +239,7 @@ TEST_F(RigNotes, ARigInOtherCoordinatesThanItsSceneIsNoted) {
                  "the mesh moved by about"});
 }
 
-TEST_F(RigNotes, ALampAFewMillimetresFromAPointIsNotedAndOneInItRefused) {
+TEST_F(RigNotes, ALampNearAPointIsNotedAndOneInItIsRefused) {
   EXPECT_TRUE(lamps_in_points(rig).empty());
   rig.fixtures[2].world_from_mount.translation_m = rig.points[2].position_world_m + Vec3(0, 0, 0.005);
   EXPECT_TRUE(lamps_in_points(rig).empty());

@@ -73,7 +73,7 @@ TEST(SceneBuilder, PlacesTheRoomAsItsFileStates) {
   EXPECT_NEAR((scene->origin_world_m - Vec3(0, 0, 1.5)).norm(), 0, 1e-6);
 }
 
-TEST(SceneBuilder, StandsABoxOnTheMiddleOfItsUndersideAndTurnsIt) {
+TEST(SceneBuilder, PlacesABoxByTheCentreOfItsUndersideAndRotatesIt) {
   Rig rig = rig_with_room();
   rig.scene.objects = {box_object("plinth", {0.4, 0.2, 1}, {1, 0.5, 0.1}, rad_from_deg(90))};
   const auto scene = build_scene(rig);
@@ -97,7 +97,7 @@ TEST(SceneBuilder, ABoxIsClosedAndItsNormalsPointOutwards) {
   EXPECT_NEAR(volume, 24, 1e-5);
 }
 
-TEST(SceneBuilder, ScalesAMeshToItsHeightAndStandsIt) {
+TEST(SceneBuilder, ScalesAMeshToItsHeightAndPlacesIt) {
   Rig rig;
   SceneObject model = box_object("model", Vec3::Zero(), {7, 8, 9}, rad_from_deg(90));
   model.mesh = room();
@@ -139,7 +139,7 @@ TEST(SceneBuilder, FirstMatchingReflectanceRuleWins) {
   EXPECT_EQ(scene->warnings.size(), 1u);
 }
 
-TEST(SceneBuilder, GivesGlossByTheRuleThatGivesTheReflectance) {
+TEST(SceneBuilder, TakesGlossFromTheRuleOfTheReflectance) {
   Rig rig = rig_with_room();
   rig.scene.reflectances = {{"wa?l", Vec3::Constant(0.6), {8, 1}, 0.04, 0.2},
                             {"*l*", Vec3::Constant(0.2), {9, 1}, 0.5, 0.7}};

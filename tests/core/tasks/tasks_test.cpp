@@ -71,7 +71,7 @@ TEST(ComputeTransport, EndsWhenAskedWhileItRuns) {
   EXPECT_EQ(transport.error().cause, Cause::cancelled);
 }
 
-TEST(SolveTasks, SetsLevelsThatGiveThePointsTheirGoals) {
+TEST(SolveTasks, SetsLevelsThatMeetTheGoals) {
   const Session session = opened(room_text());
   const TransportMatrix transport = transport_of(session, {});
   const auto solved = solve_tasks(session, transport, {});
@@ -122,7 +122,7 @@ TEST(SolveWhatHangs, SkipsPlacementsAndLightsExistingFixtures) {
   EXPECT_EQ(solved->rig.fixtures.size(), 3);
 }
 
-TEST(LightModel, HasTheTransportOfPointsAndMetersApart) {
+TEST(LightModel, SeparatesTheTransportOfPointsAndMeters) {
   const Session session = opened(room_text());
   const TransportMatrix transport = transport_of(session, {});
   const LightModel model = light_model(session.rig, transport);

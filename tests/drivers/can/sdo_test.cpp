@@ -23,7 +23,7 @@ TEST(SdoCodec, FollowsCiA301) {
   EXPECT_EQ(of(encode_abort({0x1008, 0}, kAbortTimeout)), from_hex("8008100000000405"));
 }
 
-TEST(SdoCodec, UnderstandsEveryAnswer) {
+TEST(SdoCodec, DecodesEveryAnswer) {
   SdoAnswer answer = decode_sdo_answer(from_hex("6040600000000000"));
   EXPECT_EQ(answer.kind, SdoAnswerKind::downloaded);
   EXPECT_EQ(answer.object, (ObjectAddress{0x6040, 0}));

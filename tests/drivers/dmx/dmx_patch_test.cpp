@@ -43,7 +43,7 @@ TEST(DmxPatch, RoundTrips16BitAnglesWithinHalfAStep) {
   }
 }
 
-TEST(DmxPatch, PutsBothBytesOfEachValueAndTheConstantsIntoTheFixturesSlots) {
+TEST(DmxPatch, WritesBothBytesOfEachValueAndTheConstants) {
   Rig rig = rig_with(bus_of("sacn"));
   add_head(rig, "head", 3, 10);
   DmxPatchbay bay(rig, 0);
@@ -88,7 +88,7 @@ TEST(DmxPatch, StartsDarkWithHeadsAimedAsTheRigFileStates) {
   EXPECT_EQ(slots[6], 255);
 }
 
-TEST(DmxPatch, AnAimGoesOutOnlyWithTheNextLevels) {
+TEST(DmxPatch, SendsAnAimOnlyWithTheNextLevels) {
   Rig rig = rig_with(bus_of("sacn"));
   add_head(rig, "head", 1, 1);
   DmxPatchbay bay(rig, 0);

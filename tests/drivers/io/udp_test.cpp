@@ -93,7 +93,7 @@ TEST(Udp, OpensAndClosesRepeatedly) {
   }
 }
 
-TEST(Udp, NamesAnInterfaceThatDoesNotExist) {
+TEST(Udp, NamesAMissingInterface) {
   UdpSettings settings;
   settings.multicast_interface = "no-such-0";
   const auto channel = make_udp(settings);

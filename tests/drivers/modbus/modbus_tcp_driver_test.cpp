@@ -91,7 +91,7 @@ TEST(ModbusTcpDriver, WritesNeighboursTogetherAndLoneRegistersAlone) {
   EXPECT_EQ(requests[2], from_hex("0003 0000 0006 0b 06 0002 01f4"));
 }
 
-TEST(ModbusTcpDriver, WritesAgainOnlyWhatChangedOrNeedsRefreshing) {
+TEST(ModbusTcpDriver, RewritesOnlyChangedOrExpiringRegisters) {
   ModbusBench bench(well);
   add_modbus(bench.rig, "a", 1, 0);
   bench.start();
@@ -323,7 +323,7 @@ TEST(ModbusTcpDriver, WritesSinglyToADeviceWithoutFunction16) {
   EXPECT_EQ(bench.health("a").life, Life::active);
 }
 
-TEST(ModbusTcpDriver, ReconnectsAtOnceWhenThePeerHasClosedAnIdleConnection) {
+TEST(ModbusTcpDriver, ReconnectsAtOnceAfterThePeerClosedAnIdleConnection) {
   bool close = true;
   ModbusBench bench([&close](const Bytes& request) {
     return ScriptedAnswer{right_answer(request), milliseconds(0), milliseconds(0), close};

@@ -138,7 +138,7 @@ TEST(World, PeaksCoverEveryStep) {
   EXPECT_DOUBLE_EQ(world->points()[0].max_lux_seen, 10);
 }
 
-TEST(World, EveryStretchAboveALimitIsRecorded) {
+TEST(World, EveryPeriodAboveALimitIsRecorded) {
   const Rig rig = tiny_rig();  // table: at most 200 lx
   const auto world = tiny_world(rig);
   world->set_drive(2, 1);  // 200 lx: at the limit, not above

@@ -208,7 +208,7 @@ TEST_F(CommandLine, BashFiltersTheOfferedWords) {
   EXPECT_EQ(offered({"draw", ""}), "\n") << "bash offers files by itself";
 }
 
-TEST_F(CommandLine, EachShellAcceptsItsScript) {
+TEST_F(CommandLine, EveryShellAcceptsItsScript) {
   for (const auto& [name, shell] : shells()) {
     const std::string script_file =
         ::testing::TempDir() + "luxrig-completion-" + std::to_string(::getpid()) + "." + name;

@@ -101,7 +101,7 @@ TEST(CommandTable, EveryCommandHasAManPage) {
   EXPECT_EQ(luxrig::testing::run({program("luxrig"), "--man-pages", "/nowhere"}).code, 1);
 }
 
-TEST(CommandTable, TheShellIsOfferedEveryCommandAndItsOptions) {
+TEST(CommandTable, ShellCompletionOffersEveryCommandAndItsOptions) {
   std::vector<std::string> names;
   for (const Command& command : command_table()) names.emplace_back(command.name);
   EXPECT_EQ(offered({""}), names);

@@ -102,7 +102,7 @@ TEST(Run, PageShowsTheRunningRig) {
   EXPECT_GT(std::filesystem::file_size(program("../screenshots/daemon.png")), 10'000u);
 }
 
-TEST(Run, KilledSimulatorHoldsThenSafeThenResumesByItself) {
+TEST(Run, AKilledSimulatorHoldsTheLightThenGoesSafeThenResumes) {
   LiveRig rig(source("tests/rigs/room"));
   ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.daemon().output();
   const double lit = rig.level_sum();

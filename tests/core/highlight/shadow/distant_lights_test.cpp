@@ -28,7 +28,7 @@ DirectionHistogram votes_around(const std::vector<std::pair<Vec3, std::uint32_t>
   return h;
 }
 
-TEST(DistantLights, StandWhereVotesGather) {
+TEST(DistantLights, LieWhereVotesGather) {
   const std::vector<std::pair<Vec3, std::uint32_t>> lobes = {
       {Vec3(1, 0, 0.5).normalized(), 1000}, {Vec3(-1, 0.3, 0.2).normalized(), 900}, {Vec3(0, -1, 1).normalized(), 700}};
   const auto lights = distant_lights(votes_around(lobes), {3, 0.33});

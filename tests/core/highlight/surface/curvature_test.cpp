@@ -43,7 +43,7 @@ TEST(Curvature, OfACylinderMatchesItsClosedFormWithDirections) {
   }
 }
 
-TEST(Curvature, AtTheOpenRimOfACylinderIsStillKnown) {
+TEST(Curvature, IsKnownAtTheOpenRimOfACylinder) {
   const Measured m = measured(cylinder(1, 2, 120, 40), 0.25);
   const Errors e = errors_against(m, [](const Vec3& p) -> std::optional<Truth> {
     if (std::abs(p.z()) < 0.99) return std::nullopt;
@@ -134,7 +134,7 @@ TEST(Curvature, TurnsAndScalesWithTheMesh) {
   }
 }
 
-TEST(Curvature, DoesNotDependOnTheOrderOfTheFile) {
+TEST(Curvature, DoesNotDependOnTheElementOrderOfTheFile) {
   const Scene scene = noisy(torus(1, 0.4, 100, 40), 0.002, 1);
   const Measured one = measured(scene, 0.15), two = measured(shuffled(scene, 9), 0.15);
   ASSERT_EQ(one.curvature.size(), two.curvature.size());

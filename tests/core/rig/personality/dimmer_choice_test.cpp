@@ -213,7 +213,7 @@ TEST(DimmerChoice, LevelsUseTheDimmersOwnRangeAboveItsMinimumLight) {
   EXPECT_EQ(lamp.sent(0, 1), 215);
 }
 
-TEST(DimmerChoice, ADimmerThatRunsBackwardsIsBrightAtItsLowEnd) {
+TEST(DimmerChoice, AReversedDimmerIsBrightAtItsLowEnd) {
   const Fitted lamp = fit_ofl(R"("D": {"capability":
       {"type": "Intensity", "brightnessStart": "bright", "brightnessEnd": "off"}})",
                               "\"D\"");

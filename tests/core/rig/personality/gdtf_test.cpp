@@ -24,7 +24,7 @@ const PersonalityChannel& channel_named(const PersonalityMode& mode, const std::
   return at == mode.channels.end() ? none : *at;
 }
 
-TEST(DmxValue, FillsUpWithItsOwnBytesUnlessShifted) {
+TEST(DmxValue, RepeatsItsBytesToFillUnlessShifted) {
   EXPECT_EQ(dmx_value("255/1", 1), 255u);
   EXPECT_EQ(dmx_value("255/1", 2), 65535u);  // DIN SPEC 15800's own example
   EXPECT_EQ(dmx_value("255/1s", 2), 65280u);

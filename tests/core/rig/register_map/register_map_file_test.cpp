@@ -37,7 +37,7 @@ TEST(RegisterMapFile, EveryShippedMapIsValidAndNamesItsSource) {
   EXPECT_GE(maps, 4u);
 }
 
-TEST(RegisterMapFile, KnowsTheEightOutputsOfAnAnalogueModule) {
+TEST(RegisterMapFile, DescribesTheEightOutputsOfAnAnalogueModule) {
   const RegisterMap map = map_named("waveshare-analog-output-8ch-b.toml");
   const auto levels = map.with_role(RegisterRole::level);
   ASSERT_EQ(levels.size(), 8u);
@@ -49,7 +49,7 @@ TEST(RegisterMapFile, KnowsTheEightOutputsOfAnAnalogueModule) {
   EXPECT_EQ(told_when_data_stops(map), "holds its last level for ever");
 }
 
-TEST(RegisterMapFile, KnowsRelaysAndInputsOfOneBit) {
+TEST(RegisterMapFile, DescribesRelaysAndInputsOfOneBit) {
   const RegisterMap map = map_named("waveshare-modbus-rtu-relay-d.toml");
   const auto levels = map.with_role(RegisterRole::level);
   ASSERT_EQ(levels.size(), 8u);
@@ -87,7 +87,7 @@ TEST(RegisterMapFile, ReportsSettingsThatABitCannotHave) {
             std::string::npos);
 }
 
-TEST(RegisterMapFile, KnowsHowTheCouplersWatchdogIsArmed) {
+TEST(RegisterMapFile, DescribesHowToArmTheCouplersWatchdog) {
   const RegisterMap map = map_named("wago-750-559.toml");
   ASSERT_EQ(map.setup.size(), 4u);
   EXPECT_EQ(map.registers[map.setup[0].index].address, 0x1008);
@@ -97,7 +97,7 @@ TEST(RegisterMapFile, KnowsHowTheCouplersWatchdogIsArmed) {
   EXPECT_EQ(told_when_data_stops(map), "goes dark after 2 s by its watchdog, which is armed");
 }
 
-TEST(RegisterMapFile, KnowsTheLuxmetersTwoRegisters) {
+TEST(RegisterMapFile, DescribesTheLuxmetersTwoRegisters) {
   const RegisterMap map = map_named("dfrobot-sen0644.toml");
   const auto readings = map.with_role(RegisterRole::illuminance);
   ASSERT_EQ(readings.size(), 1u);

@@ -146,7 +146,7 @@ TEST_F(MeshFiles, AppliesTheTransformsOfNestedNodesAndTheBaseColour) {
   EXPECT_NEAR((material.reflectance_rgb - Vec3(0.25, 0.5, 0.75)).norm(), 0, 1e-6);
 }
 
-TEST_F(MeshFiles, OpensNothingOutsideTheFolderOfTheMesh) {
+TEST_F(MeshFiles, OpensNoFileOutsideTheFolderOfTheMesh) {
   std::filesystem::create_directory(folder_ / "inside");
   write("outside.bin", triangle_bytes());
   write("inside/own.bin", triangle_bytes());
@@ -230,7 +230,7 @@ TEST_F(MeshFiles, RefusesInvalidMeshesWithAProblem) {
   EXPECT_FALSE(load_mesh({folder_, 1, UpAxis::z}).has_value());
 }
 
-TEST_F(MeshFiles, KeepsOnlyTheMaterialsThatATriangleUses) {
+TEST_F(MeshFiles, KeepsOnlyUsedMaterials) {
   write("paint.mtl",
         "newmtl idle\nKd 1 1 1\nnewmtl oak\nKd 0.4 0.3 0.2\nnewmtl thin\nKd 1 1 1\nnewmtl snow\nKd 1 1 1\n");
   const auto scene = load("a.obj",
@@ -250,7 +250,7 @@ TEST_F(MeshFiles, KeepsOnlyTheMaterialsThatATriangleUses) {
   }
 }
 
-TEST_F(MeshFiles, DropsTheMaterialThatGltfReadersAdd) {
+TEST_F(MeshFiles, DropsTheDefaultMaterialAddedByGltfReaders) {
   write("one.bin", triangle_bytes());
   const auto scene = load("a.gltf", triangle_gltf(R"({"mesh":0})", "one.bin"));
   ASSERT_TRUE(scene.has_value()) << scene.error().front().text();

@@ -204,7 +204,7 @@ TEST_F(FormatFiles, APictureWithinAGlbCountsAsItsMean) {
   EXPECT_TRUE(warns(*older, "specular colour"));
 }
 
-TEST_F(FormatFiles, EveryInstanceOfAMeshStandsInItsPlace) {
+TEST_F(FormatFiles, EveryInstanceOfAMeshIsPlaced) {
   GltfMaker gltf = GltfMaker::square();
   nlohmann::json& many = gltf.root["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
   many["TRANSLATION"] = gltf.accessor<float>({0, 0, 0, 5, 0, 0, 0, 0, 7}, 5126, "VEC3", 3);
@@ -254,7 +254,7 @@ TEST_F(FormatFiles, CompressionIsRefusedByName) {
   }
 }
 
-TEST_F(FormatFiles, BrokenGltfIsRefusedWithItsLine) {
+TEST_F(FormatFiles, BrokenGltfIsRefusedWithItsLineNumber) {
   EXPECT_EQ(refusal("a.gltf", "{\"asset\":{\"version\":\"2.0\"},\n \"scene\" 0}\n"),
             "a.gltf:2:10: is no JSON from here on");
   EXPECT_EQ(refusal("b.gltf", "{\"asset\":{\"version\":\"1.0\"}}"), "b.gltf:0:0: is glTF \"1.0\"");
@@ -293,7 +293,7 @@ TEST_F(FormatFiles, ATruncatedBinaryStlIsRefusedWithItsCounts) {
   EXPECT_EQ(whole->triangles.size(), 1u);
 }
 
-TEST_F(FormatFiles, PolygonsThatBendInwardsAreCoveredOnce) {
+TEST_F(FormatFiles, ConcavePolygonsAreCoveredOnce) {
   // An L, and a star of five points; their triangles' areas add up to theirs.
   const auto bent = load("a.obj", "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\nf 1 2 3 4 5 6\n");
   ASSERT_TRUE(bent);

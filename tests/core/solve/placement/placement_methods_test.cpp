@@ -26,7 +26,7 @@ TEST(PlacementMethods, AreFoundByName) {
   EXPECT_EQ(find_placement_method("lin2013"), nullptr) << "only compared with";
 }
 
-TEST(PlacementMethods, ChooseANumberWhereTheyCan) {
+TEST(PlacementMethods, ChooseTheNumberOfLightsIfTheyCan) {
   const LitHall hall(make_box_room(3), kHallLattice_m);
   const LightingGoal goal = hall.goal_of({{0.9, 0.8, 2.1}, {3.1, 2.2, 1.9}, {2.2, 1.4, 2.3}}, {800, 500, 300});
   for (const PlacementMethod& method : compared_methods()) {

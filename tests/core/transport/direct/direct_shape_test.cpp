@@ -80,7 +80,7 @@ TEST(DirectShapeLight, PendantsOfAnyKindInAnEmptyRoomNeedNoRay) {
     }
 }
 
-TEST(DirectShapeLight, APartlyHiddenLampIsSampledToTheWantedErrorWithAnHonestErrorBar) {
+TEST(DirectShapeLight, APartlyHiddenLampIsSampledToTheWantedErrorHonestly) {
   std::uint64_t rays_before = 0;
   for (const double wanted : {0.03, 0.01, 0.003}) {
     int within_two = 0, runs = 0;

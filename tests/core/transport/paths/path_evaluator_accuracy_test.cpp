@@ -160,7 +160,7 @@ TEST(PathEvaluator, ReportedErrorsHoldAsOftenAsStated) {
   EXPECT_GE(within_four, 0.985 * trials);
 }
 
-TEST(PathEvaluator, TheMeanOverSeedsHasNoBias) {
+TEST(PathEvaluator, IsUnbiasedOverSeeds) {
   const Scene cube = make_cube(2, 0.8);
   const RayScene rays(cube);
   const Vec3 source_m(0.35, -0.2, 0.45);

@@ -37,7 +37,7 @@ TEST(PathEvaluator, ReachesASmallerErrorWithMoreRays) {
   }
 }
 
-TEST(PathEvaluator, ErrorsOfLampsThatAreOffCostNothing) {
+TEST(PathEvaluator, ErrorsOfUnlitLampsCostNothing) {
   const RayScene rays(make_cube(2, 0.5));
   const std::vector<Receiver> receivers = {{{0.1, 0.2, -1}, Vec3::UnitZ()}};
   const std::vector<Emitter> emitters = {

@@ -61,7 +61,7 @@ TEST(RdmTransaction, EndsWithItsAnswer) {
   EXPECT_FALSE(talk.due(1000));
 }
 
-TEST(RdmTransaction, AsksThreeTimesThenGivesUp) {
+TEST(RdmTransaction, GivesUpAfterThreeRequests) {
   Talk talk(Pid::device_hours);
   ASSERT_TRUE(talk.due(0));
   EXPECT_FALSE(talk.due(299));

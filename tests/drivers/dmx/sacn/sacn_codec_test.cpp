@@ -46,7 +46,7 @@ TEST(SacnCodec, WritesAShortPacketWithItsOwnLengths) {
   EXPECT_EQ(part(bytes, 108, 129), from_hex("64 0000 07 00 0003 700e 02 a1 0000 0001 0004 00 010203"));
 }
 
-TEST(SacnCodec, PutsEachOptionIntoItsBit) {
+TEST(SacnCodec, EncodesEachOptionInItsBit) {
   DataPacket packet = full_packet();
   packet.preview = true;
   EXPECT_EQ(encode(packet)[112], 0x80);

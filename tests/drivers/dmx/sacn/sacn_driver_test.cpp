@@ -113,7 +113,7 @@ TEST(SacnDriver, SendsTheSamePacketsOverEveryInterface) {
   EXPECT_EQ(left->sent[0].bytes, right->sent[0].bytes);
 }
 
-TEST(SacnDriver, SendsEverythingToTheStandInWhenRedirected) {
+TEST(SacnDriver, SendsEverythingToTheRedirectedAddress) {
   SacnBench bench({{"interface", std::string("no-such-0")}}, Redirect{"127.0.0.1", 4444});
   ASSERT_TRUE(bench.driver->activate(at_ms(0)));
   ASSERT_TRUE(bench.write(0, 0.5));
@@ -121,7 +121,7 @@ TEST(SacnDriver, SendsEverythingToTheStandInWhenRedirected) {
   EXPECT_EQ(text_of(bench.net->sent.at(1).to), "127.0.0.1:4444");
 }
 
-TEST(SacnDriver, SaysGoodbyeThreeTimesPerUniverseAndOnlyOnce) {
+TEST(SacnDriver, SendsThreeGoodbyesPerUniverseOnlyOnce) {
   SacnBench bench;
   ASSERT_TRUE(bench.driver->activate(at_ms(0)));
   ASSERT_TRUE(bench.write(0, 1.0));
@@ -138,7 +138,7 @@ TEST(SacnDriver, SaysGoodbyeThreeTimesPerUniverseAndOnlyOnce) {
   EXPECT_EQ(bench.net->sent.size(), 6u);
 }
 
-TEST(SacnDriver, SaysGoodbyeWhenDestroyedWhileActive) {
+TEST(SacnDriver, SendsGoodbyesWhenDestroyedWhileActive) {
   SacnBench bench;
   ASSERT_TRUE(bench.driver->activate(at_ms(0)));
   ASSERT_TRUE(bench.write(0, 1.0));
@@ -147,7 +147,7 @@ TEST(SacnDriver, SaysGoodbyeWhenDestroyedWhileActive) {
   EXPECT_FALSE(bench.net->open);
 }
 
-TEST(SacnDriver, WritesNothingBeforeItIsActiveOrAfter) {
+TEST(SacnDriver, WritesNothingWhileInactive) {
   SacnBench bench;
   EXPECT_EQ(bench.write(0, 1.0).error().cause, Cause::inactive);
   ASSERT_TRUE(bench.driver->activate(at_ms(0)));

@@ -93,7 +93,7 @@ TEST(SacnInput, KeepsSourcesWhosePacketsAreReadLate) {
   EXPECT_EQ(presence(receiver, 8501), DeskPresence::absent) << "one that is silent is lost all the same";
 }
 
-TEST(SacnInput, LosesASourceAfterTwoAndAHalfSecondsAndKeepsItsLastLevels) {  // 6.7.1
+TEST(SacnInput, LosesASourceAfterTwoAndAHalfSecondsButKeepsItsLevels) {  // 6.7.1
   Receiver receiver(hearing());
   HandDesk desk(1);
   warm_up(receiver, {{&desk, 77}});

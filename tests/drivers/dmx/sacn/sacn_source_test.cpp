@@ -34,7 +34,7 @@ TEST(SacnSource, KeepsToTheDmxRateHoweverOftenItIsCalled) {
   EXPECT_GE(packets, 438);
 }
 
-TEST(SacnSource, DoesNotHalveItsRateForACallerThatIsSometimesEarly) {
+TEST(SacnSource, KeepsItsRateForACallerThatIsSometimesEarly) {
   Source source({});
   const DmxSlots slots{};
   int packets = 0;
@@ -66,7 +66,7 @@ TEST(SacnSource, SuppressesUnchangedDataAfterThreeRepeatsAndKeepsAlive) {
   EXPECT_TRUE(source.due(at_ms(4001), 1, slots));
 }
 
-TEST(SacnSource, CountsEachUniverseByItselfAndWrapsAround) {
+TEST(SacnSource, CountsSequencesPerUniverseAndWrapsAround) {
   Source source({});
   const DmxSlots slots{};
   int last = -1;
@@ -101,7 +101,7 @@ TEST(SacnSource, IsHeardByItsSecondPacketAfterARestart) {
   }
 }
 
-TEST(SacnSource, SaysGoodbyeWithTheTerminatedBitAndKeepsCounting) {
+TEST(SacnSource, SendsGoodbyesWithTheTerminatedBitAndKeepsCounting) {
   Source source({});
   DmxSlots slots{};
   slots[0] = 77;

@@ -22,7 +22,7 @@ TEST(Ftdi, RequestsAreAsPublished) {
   EXPECT_EQ(get_modem_status(only), (UsbSetup{0xc0, 5, 0, 0}));
 }
 
-TEST(Ftdi, PortsOfAChipWithSeveralHaveTheirOwnEndpoints) {
+TEST(Ftdi, PortsOfAMultiPortChipHaveTheirOwnEndpoints) {
   EXPECT_EQ(Port{}.bulk_out(), 0x02);
   EXPECT_EQ(Port{}.bulk_in(), 0x81);
   EXPECT_EQ(Port{1}.bulk_out(), 0x02);

@@ -139,7 +139,7 @@ TEST(ModbusFarEnd, RefusesEveryOtherFunctionWithException1) {
   }
 }
 
-TEST(ModbusFarEnd, RefusesRegistersThatAreNotThereWithException2) {
+TEST(ModbusFarEnd, RefusesMissingRegistersWithException2) {
   TwoUnits units;
   EXPECT_EQ(pdu({3, 0, 9, 0, 1}, units), (Bytes{0x83, 2}));
   EXPECT_EQ(pdu({3, 0, 11, 0, 2}, units), (Bytes{0x83, 2}));       // the second one is missing

@@ -230,7 +230,7 @@ TEST(SacnFarEnd, ATerminatedSourceIsGoneAtOnceWithItsLevels) {
   EXPECT_EQ(first_slot(receiver, at_s(0.2)), 30);
 }
 
-TEST(SacnFarEnd, OnlyTheHighestPriorityPresentCounts) {
+TEST(SacnFarEnd, OnlyTheHighestPresentPriorityCounts) {
   SacnReceiver receiver;
   receiver.receive(at_s(0), packet_of({.source = 1, .priority = 100, .level = 200}));
   receiver.receive(at_s(0), packet_of({.source = 2, .priority = 150, .level = 20}));
@@ -252,7 +252,7 @@ TEST(SacnFarEnd, MergesEqualPrioritiesByTheHighestSlotValue) {
   EXPECT_EQ((*levels)[2], 3);
 }
 
-TEST(SacnFarEnd, ASourceIsLostAfterTwoAndAHalfSecondsAndTheLastLookIsHeld) {
+TEST(SacnFarEnd, ASourceIsLostAfterTwoAndAHalfSecondsHoldingItsLook) {
   SacnReceiver receiver;
   receiver.receive(at_s(1), packet_of({.sequence = 9, .level = 200}));
   EXPECT_EQ(receiver.sources(3, at_s(1) + 2500ms), 1u);

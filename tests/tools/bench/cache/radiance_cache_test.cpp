@@ -25,7 +25,7 @@ TEST(RadianceCache, AClosedCubeReceivesFluxOverOneMinusReflectance) {
   }
 }
 
-TEST(RadianceCache, AgreesWithRadiosityAtPointsOfACubeWithinThreePercentAndWithinItsError) {
+TEST(RadianceCache, AgreesWithRadiosityInACubeWithinThreePercentAndItsError) {
   const double reflectance = 0.6, edge_m = 2;
   const Vec3 source_m(0.35, -0.2, 0.45);
   const Scene cube = make_cube(edge_m, reflectance);
@@ -46,7 +46,7 @@ TEST(RadianceCache, AgreesWithRadiosityAtPointsOfACubeWithinThreePercentAndWithi
   EXPECT_GT(static_cast<double>(within), 0.9 * static_cast<double>(matrix.receivers()));
 }
 
-TEST(RadianceCache, NoLightGoesThroughAWallBetweenClosedRooms) {
+TEST(RadianceCache, NoLightPassesAWallBetweenClosedRooms) {
   const Scene scene = two_rooms(0.9);
   std::vector<Receiver> receivers;
   for (double y = 0.1; y < 2; y += 0.3)

@@ -62,7 +62,7 @@ TEST(LevelSet, IsFlatWhereAPlaneCutsABall) {
   EXPECT_GT(flat, 150);
 }
 
-TEST(LevelSet, IsClosedWhereTheBoxCutsItAndWhenTheFunctionIsZeroOnTheGrid) {
+TEST(LevelSet, IsClosedAtTheBoxAndWithZerosOnTheGrid) {
   EXPECT_TRUE(is_closed(mesh_level_set(box_of(1), 0.25, [](const Vec3&) { return -1.0; })));
   EXPECT_TRUE(is_closed(mesh_level_set(box_of(1), 0.25, [](const Vec3& p) { return p.cwiseAbs().maxCoeff() - 0.5; })));
   // A chessboard of cubes: up to four of them meet at each edge of the grid.

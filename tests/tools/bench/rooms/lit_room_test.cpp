@@ -14,7 +14,7 @@ using namespace lit_room_fixture;
 
 INSTANTIATE_TEST_SUITE_P(All, LitRooms, testing::ValuesIn(kRooms), [](const auto& of) { return of.param.name; });
 
-TEST_P(LitRooms, HaveTheSizeTheyPromise) {
+TEST_P(LitRooms, HaveTheirStatedSize) {
   for (const std::uint64_t seed : {1, 2, 3}) {
     const LitRoom room = GetParam().make(seed);
     EXPECT_EQ(room.name, GetParam().name);

@@ -192,7 +192,7 @@ TEST_F(HttpApiTest, SetsByHandAndReleases) {
   EXPECT_EQ(held, "");
 }
 
-TEST_F(HttpApiTest, ARefusedReloadNamesTheKeyAndAnApplyWhatIsHeldByHand) {
+TEST_F(HttpApiTest, ARefusedReloadNamesItsKeyAndAnApplyItsHeldFixtures) {
   const std::string refused = ask(port, post("/api/reload", "{}", kJson));
   EXPECT_NE(refused.find(" 400 "), std::string::npos);
   EXPECT_NE(refused.find("rig.toml:7:1: [[bus]] \\\"dmx\\\" has changed: restart"), std::string::npos) << refused;
