@@ -47,7 +47,7 @@ TEST(ShowVerdicts, AreTrueForPointsWithAndWithoutAMeter) {
   EXPECT_GE(covered, goals * 95 / 100);
 }
 
-TEST(ShowVerdicts, AreUnknownWithoutLuxmetersAndNeverMissed) {
+TEST(ShowVerdicts, MeetNoGoalWithoutLuxmetersAndLeaveMostUnknown) {
   Hall hall = make_hall(2);
   hall.rig.luxmeters.clear();
   for (Point& point : hall.rig.points) point.max_lx.reset();

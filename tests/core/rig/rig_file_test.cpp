@@ -332,7 +332,7 @@ double seconds_to_load(const std::string& text) {
   return min_s;
 }
 
-TEST(RigFile, LoadsLargeFilesInLinearTime) {
+TEST(RigFile, LoadsLargeFilesInLessThanQuadraticTime) {
   const std::string large = text_of_large_rig(512, 20000);
   const Checked<Rig> rig = parse(large);
   ASSERT_TRUE(rig) << listed(rig.error());

@@ -27,7 +27,7 @@ class DirectionsTask : public ReliefTask {
   }
 };
 
-TEST_F(DirectionsTask, RakeAcrossTheWellFromApartAndAboveTheSlab) {
+TEST_F(DirectionsTask, RakesAcrossTheWellFromSeparatePlacesAboveTheSlab) {
   const Session session = well(std::string(kWellRig) + kDirections);
   const auto found = directions_of(session);
   ASSERT_TRUE(found) << found.error().detail;
@@ -49,7 +49,7 @@ TEST_F(DirectionsTask, RakeAcrossTheWellFromApartAndAboveTheSlab) {
   EXPECT_LE(found->exposed_contrast, 1);
 }
 
-TEST_F(DirectionsTask, AvoidDirectionsWithANearerWall) {
+TEST_F(DirectionsTask, AvoidsPlacesBehindANearerWall) {
   const Session walled = well(std::string(kWellRig) + kDirections + kWalls);
   const auto found = directions_of(walled);
   ASSERT_TRUE(found) << found.error().detail;
@@ -79,7 +79,7 @@ TEST_F(DirectionsTask, IsRefusedWhereNoLightCanBeHeld) {
   EXPECT_NE(found.error().detail.find("distance_m"), std::string::npos) << found.error().detail;
 }
 
-TEST_F(DirectionsTask, ChoosesTheNumberOfDirectionsByThePeakOfContrast) {
+TEST_F(DirectionsTask, ChoosesANumberOfDirectionsUpToItsMaximum) {
   const Session session = well(replaced(std::string(kWellRig) + kDirections, "lights = 2\n", "max_lights = 3\n"));
   const auto found = directions_of(session);
   ASSERT_TRUE(found) << found.error().detail;

@@ -246,7 +246,7 @@ contrast = "lux"
   EXPECT_NEAR(seen["points"][0]["lux"].get<double>(), plan["points"][0]["lux"].get<double>(), 1e-3);
 }
 
-TEST(Aim, AnAppliedPlanTurnsAHeadInTheDarkAndStaysInForce) {
+TEST(Aim, AnAppliedPlanTurnsAHeadAndAnImpossibleOneIsRefused) {
   LiveRig rig(source("tests/rigs/room"));
   ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.daemon().output();
   const auto file = rig.file("plan.json");
