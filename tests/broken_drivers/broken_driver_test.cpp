@@ -40,7 +40,7 @@ class ABrokenDriver : public ::testing::TestWithParam<std::size_t> {
   const Breakage& breakage() const { return breakages()[GetParam()]; }
 };
 
-TEST_P(ABrokenDriver, FailsTheTestThatIsThereForIt) {
+TEST_P(ABrokenDriver, FailsTheTestMeantForIt) {
   const Ran ran = run_suite(breakage());
   EXPECT_EQ(ran.exit_code, 1) << ran.said;
   EXPECT_NE(ran.said.find("1 FAILED TEST"), std::string::npos)

@@ -29,7 +29,7 @@ TEST(Axes, AreSetUpHomedAndTurned) {
   EXPECT_LT(bench.moved_at, still) << "it stays";
 }
 
-TEST(Axes, WithoutAnAimOnlyHomingAtStartMovesThem) {
+TEST(Axes, MoveWithoutAnAimOnlyToHomeAtStart) {
   AxesBench when_needed(rig_of_axes({{"home", std::string("when needed")}}));
   when_needed.run(5);
   EXPECT_EQ(when_needed.moved_at, Time{}) << "nobody has asked";
@@ -105,7 +105,7 @@ TEST(Axes, MoveInStepAlongAStraightLine) {
   EXPECT_NEAR(to_seconds(bench.moved_at - asked), move.seconds, 0.15) << "and the handshake";
 }
 
-TEST(Axes, ANewAimReplacesTheOneUnderWay) {
+TEST(Axes, ANewAimReplacesTheCurrentOne) {
   AxesBench bench;
   bench.aim = AxesBench::deg(0, 0);
   ASSERT_TRUE(bench.arrive());
@@ -119,7 +119,7 @@ TEST(Axes, ANewAimReplacesTheOneUnderWay) {
   EXPECT_LT(furthest, 100);
 }
 
-TEST(Axes, AnAxisUnderWayStopsAtANearAimAsFastAsItMay) {
+TEST(Axes, AMovingAxisBrakesForANearAimAtItsLimit) {
   AxesBench bench;
   bench.aim = AxesBench::deg(0, 0);
   ASSERT_TRUE(bench.arrive());
@@ -147,7 +147,7 @@ struct OnItsWay : AxesBench {
   }
 };
 
-TEST(AxesFaults, ALostAxisStopsTheOtherAndBothGoOnWhenItIsBack) {
+TEST(AxesFaults, ALostAxisStopsTheOtherAndBothResumeWhenItReturns) {
   OnItsWay bench;
   bench.faults.set(kPan, FaultKind::silent, true);  // its cable is cut: it does not hear the master either
   const Time gone = bench.now;
@@ -173,7 +173,7 @@ TEST(AxesFaults, ALostAxisStopsTheOtherAndBothGoOnWhenItIsBack) {
   EXPECT_EQ(bench.health(1).life, Life::active);
 }
 
-TEST(AxesFaults, AnAxisThatResetsIsSetUpAndHomedAnewAndTheOtherWaits) {
+TEST(AxesFaults, AResetAxisIsSetUpAndHomedAgainWhileTheOtherWaits) {
   OnItsWay bench;
   bench.faults.set(kTilt, FaultKind::reset, true);
   bench.run(0.5);
@@ -191,7 +191,7 @@ TEST(AxesFaults, AnAxisThatResetsIsSetUpAndHomedAnewAndTheOtherWaits) {
   EXPECT_TRUE(bench.tilt().homed());
 }
 
-TEST(AxesFaults, ByRuleAnAxisThatResetsIsNotHomedBeforeItIsNeeded) {
+TEST(AxesFaults, AResetAxisWithHomingWhenNeededStaysUnhomedUntilNeeded) {
   AxesBench bench(rig_of_axes({{"home", std::string("when needed")}}));
   bench.run(3);
   bench.faults.set(kTilt, FaultKind::reset, true);
@@ -199,7 +199,7 @@ TEST(AxesFaults, ByRuleAnAxisThatResetsIsNotHomedBeforeItIsNeeded) {
   EXPECT_EQ(bench.moved_at, Time{});
 }
 
-TEST(AxesFaults, PowerLossCoastsAndLosesThePosition) {
+TEST(AxesFaults, APowerLossLetsTheAxisCoastAndLoseItsPosition) {
   OnItsWay bench;
   const double speed = std::abs(bench.pan().speed_deg_s()), before = deg_from_rad(bench.joints().pan_rad);
   bench.faults.set(kPan, FaultKind::dead, true);
@@ -218,7 +218,7 @@ TEST(AxesFaults, PowerLossCoastsAndLosesThePosition) {
   EXPECT_TRUE(bench.pan().homed());
 }
 
-TEST(AxesFaults, ABlockedAxisHasAFollowingErrorIsResetThriceAndThenLeftAlone) {
+TEST(AxesFaults, ABlockedAxisIsResetThreeTimesAndThenLeftAlone) {
   AxesBench bench;
   bench.aim = AxesBench::deg(20, 10);
   ASSERT_TRUE(bench.arrive());
@@ -247,7 +247,7 @@ TEST(AxesFaults, ABlockedAxisHasAFollowingErrorIsResetThriceAndThenLeftAlone) {
   EXPECT_TRUE(bench.arrive(60)) << bench.health(1).detail;
 }
 
-TEST(AxesFaults, AtBusOffTheAxesStopByThemselvesAndGoOnAfterwards) {
+TEST(AxesFaults, BusOffStopsTheAxesAndTheyResumeAfterwards) {
   OnItsWay bench;
   bench.faults.set("the-bus", FaultKind::bus_off, true);
   bench.run(0.1);
@@ -264,7 +264,7 @@ TEST(AxesFaults, AtBusOffTheAxesStopByThemselvesAndGoOnAfterwards) {
   ASSERT_TRUE(bench.arrive(8)) << bench.health(0).detail << bench.health(1).detail;
 }
 
-TEST(AxesFaults, WhenTheMasterDiesTheAxesStopAsToldAndHoldOrLetGo) {
+TEST(AxesFaults, ADeadMasterStopsTheAxesWhichHoldOrReleaseAsConfigured) {
   for (const bool hold : {true, false}) {
     OnItsWay bench(rig_of_axes({{"on_stop", std::string(hold ? "hold" : "release")}}));
     const Time died = bench.now;
@@ -275,7 +275,7 @@ TEST(AxesFaults, WhenTheMasterDiesTheAxesStopAsToldAndHoldOrLetGo) {
   }
 }
 
-TEST(AxesFaults, DeactivatedTheyStopAtOnce) {
+TEST(AxesFaults, DeactivationStopsThemAtOnce) {
   OnItsWay bench;
   bench.driver->deactivate(bench.now);
   const Time stopped = bench.now;
@@ -285,7 +285,7 @@ TEST(AxesFaults, DeactivatedTheyStopAtOnce) {
   EXPECT_EQ(bench.health(1).life, Life::configured);
 }
 
-TEST(AxesFaults, LostLateAndDoubledFramesDelayButDoNotLeadAstray) {
+TEST(AxesFaults, LostLateAndDuplicateFramesDelayButNeverDivertAMove) {
   for (const FaultKind kind : {FaultKind::lost, FaultKind::slow, FaultKind::duplicated}) {
     AxesBench bench;
     bench.aim = AxesBench::deg(20, 10);
@@ -303,7 +303,7 @@ TEST(AxesFaults, LostLateAndDoubledFramesDelayButDoNotLeadAstray) {
   }
 }
 
-TEST(AxesFaults, ANodeThatSaysWrongThingsMovesNoAxisPastItsTravel) {
+TEST(AxesFaults, GarbledFramesOfANodeNeverDriveTheHeadFarAstray) {
   AxesBench bench;
   bench.aim = AxesBench::deg(20, 10);
   ASSERT_TRUE(bench.arrive());
@@ -315,7 +315,7 @@ TEST(AxesFaults, ANodeThatSaysWrongThingsMovesNoAxisPastItsTravel) {
   EXPECT_TRUE(bench.arrive(60)) << bench.health(1).detail;
 }
 
-TEST(AxesFaults, AHeadOrderedFromAPositionThatWasWrongGetsThereAllTheSame) {
+TEST(AxesFaults, AHeadAimedFromAWrongPositionStillArrives) {
   AxesBench bench;
   bench.aim = AxesBench::deg(20, 10);
   ASSERT_TRUE(bench.arrive());
@@ -329,7 +329,7 @@ TEST(AxesFaults, AHeadOrderedFromAPositionThatWasWrongGetsThereAllTheSame) {
   }
 }
 
-TEST(AxesFaults, AFullQueueIsGivenTimeAndAnInterfaceThatGoesDownIsOpenedAgain) {
+TEST(AxesFaults, AFullQueueSlowsSendingAndADownedInterfaceIsReopened) {
   AxesBench bench;
   bench.aim = AxesBench::deg(20, 10);
   ASSERT_TRUE(bench.arrive());
@@ -352,7 +352,7 @@ TEST(AxesFaults, AFullQueueIsGivenTimeAndAnInterfaceThatGoesDownIsOpenedAgain) {
   EXPECT_EQ(bench.opened, opened + 1);
 }
 
-TEST(Axes, OneSimulationIsAsTheOther) {
+TEST(Axes, IdenticalSimulationsGiveIdenticalPaths) {
   std::vector<std::vector<Joints>> paths;
   for (int run = 0; run < 2; ++run) {
     AxesBench bench;

@@ -43,7 +43,7 @@ void rest_at(AxesBench& bench, const Joints& aim) {
 
 class LimitsBySdo : public ::testing::TestWithParam<int> {};
 
-TEST_P(LimitsBySdo, ADriveThatRefusesTheMappingMovesInStepWithOneThatDoesNot) {
+TEST_P(LimitsBySdo, ADriveThatRefusesTheMappingMovesInStepWithTheOther) {
   AxesBench bench;
   bench.faults.set(kTiltAxis, FaultKind::unmappable, true, GetParam());
   const Joints from = AxesBench::deg(-20, 15), to = AxesBench::deg(100, -45);
@@ -77,7 +77,7 @@ TEST_P(LimitsBySdo, ADriveThatRefusesTheMappingMovesInStepWithOneThatDoesNot) {
 
 INSTANTIATE_TEST_SUITE_P(Refusals, LimitsBySdo, ::testing::Values(1, 2, 3));
 
-TEST(LimitsBySdoOfBoth, AHeadMovesAndWhatTheDrivesKnowIsNotSaidAgain) {
+TEST(LimitsBySdoOfBoth, AHeadMovesAndUnchangedLimitsAreNotResent) {
   AxesBench bench;
   for (const std::string& axis : {kPanAxis, kTiltAxis}) bench.faults.set(axis, FaultKind::unmappable, true, 1);
   const Joints from = AxesBench::deg(10, 0), to = AxesBench::deg(-60, 50);
@@ -103,7 +103,7 @@ TEST(LimitsBySdoOfBoth, AHeadMovesAndWhatTheDrivesKnowIsNotSaidAgain) {
   EXPECT_TRUE(bench.arrive(8));
 }
 
-TEST(LimitsBySdoLate, BothAxesWaitForAnswersThatAreLostAndTheHeadCountsAsAway) {
+TEST(LimitsBySdoLate, LostAnswersHoldBothAxesAndMarkTheHeadFaulted) {
   AxesBench bench;
   bench.faults.set(kTiltAxis, FaultKind::unmappable, true, 1);
   const Joints from = AxesBench::deg(0, 10), to = AxesBench::deg(70, -40);
@@ -123,7 +123,7 @@ TEST(LimitsBySdoLate, BothAxesWaitForAnswersThatAreLostAndTheHeadCountsAsAway) {
   EXPECT_EQ(bench.health(2).life, Life::active) << bench.health(2).detail;
 }
 
-TEST(LimitsBySdoRefused, ADriveThatTakesThemNeitherWayStandsAndSaysSo) {
+TEST(LimitsBySdoRefused, ADriveThatRefusesThemBothWaysStandsStillAndReportsIt) {
   AxesBench bench;
   bench.faults.set(kTiltAxis, FaultKind::unmappable, true, 1);
   const Joints from = AxesBench::deg(0, 10);
@@ -143,7 +143,7 @@ TEST(LimitsBySdoRefused, ADriveThatTakesThemNeitherWayStandsAndSaysSo) {
   EXPECT_EQ(bench.health(1).life, Life::faulted);
 }
 
-TEST(LimitsBySdoAnew, ADriveThatCanMapAfterAResetIsToldByPdo) {
+TEST(LimitsBySdoAnew, ADriveThatMapsAfterAResetGetsItsLimitsByPdo) {
   AxesBench bench;
   bench.faults.set(kTiltAxis, FaultKind::unmappable, true, 2);
   rest_at(bench, AxesBench::deg(0, 10));

@@ -42,7 +42,7 @@ struct UnderWay : AxesBench {
   }
 };
 
-TEST(AxesThatLie, AWrongStatuswordNeverTakesTheTorqueOffAnAxisUnderWay) {
+TEST(AxesThatLie, AWrongStatuswordNeverCutsTheTorqueOfAMovingAxis) {
   // Switch on disabled, ready, switched on, fault, fault reaction, not ready: each needs another control word to go on.
   for (const int word : {0x0250, 0x0231, 0x0233, 0x0208, 0x020F, 0x0200}) {
     UnderWay bench;
@@ -63,7 +63,7 @@ TEST(AxesThatLie, AWrongStatuswordNeverTakesTheTorqueOffAnAxisUnderWay) {
   }
 }
 
-TEST(AxesThatLie, APositionThatCannotBeStopsTheHeadAndIsReadAgain) {
+TEST(AxesThatLie, AnImpossiblePositionStopsTheHeadAndIsReadAgain) {
   UnderWay bench;
   bench.lie = [](can::CanFrame& frame) {
     if (frame.id == kPanStatus) frame.data[5] ^= 0x10;
@@ -87,7 +87,7 @@ TEST(AxesThatLie, APositionThatCannotBeStopsTheHeadAndIsReadAgain) {
   EXPECT_LT(bench.past_the_way_deg(), 0.1) << "no way to a switch";
 }
 
-TEST(AxesThatLie, AnEncoderThatLostItsCountIsHomedAnew) {
+TEST(AxesThatLie, AnEncoderThatLostItsCountIsHomedAgain) {
   UnderWay bench;
   // Both ways agree on a position that the axis cannot have reached: the count has jumped.
   bool searched = false;
@@ -104,7 +104,7 @@ TEST(AxesThatLie, AnEncoderThatLostItsCountIsHomedAnew) {
   EXPECT_TRUE(bench.arrive(60)) << bench.health(1).detail;
 }
 
-TEST(AxesThatLie, AnEncoderThatLostItsCountIsAPersonsWhereItMustNotBeHomed) {
+TEST(AxesThatLie, AnEncoderThatLostItsCountNeedsAPersonIfHomingIsForbidden) {
   AxesBench bench(rig_of_axes({{"home", std::string("never")}}));
   bench.aim = AxesBench::deg(5, 5);
   bench.run(4);
@@ -121,7 +121,7 @@ TEST(AxesThatLie, AnEncoderThatLostItsCountIsAPersonsWhereItMustNotBeHomed) {
   EXPECT_LT(bench.moved_at, still);
 }
 
-TEST(AxesThatLie, ATargetThatReadsBackOtherwiseStopsTheHead) {
+TEST(AxesThatLie, ATargetThatReadsBackDifferentlyStopsTheHead) {
   AxesBench bench;
   bench.aim = AxesBench::deg(20, 10);
   ASSERT_TRUE(bench.arrive());
@@ -139,7 +139,7 @@ TEST(AxesThatLie, ATargetThatReadsBackOtherwiseStopsTheHead) {
   EXPECT_TRUE(bench.arrive(6)) << bench.health(1).detail;
 }
 
-TEST(AxesThatLie, HomeIsBelievedOnlyWhenSaidThreeTimes) {
+TEST(AxesThatLie, HomeIsAcceptedOnlyAfterThreeReports) {
   AxesBench bench;
   bench.aim = AxesBench::deg(20, 10);
   ASSERT_TRUE(bench.run_until(10, [&] { return bench.pan().mode_display() == 6 && bench.pan().speed_deg_s() != 0; }));
@@ -155,7 +155,7 @@ TEST(AxesThatLie, HomeIsBelievedOnlyWhenSaidThreeTimes) {
   EXPECT_TRUE(bench.pan().homed());
 }
 
-TEST(AxesThatLie, HomeIsWhereTheCountIsZero) {
+TEST(AxesThatLie, HomeIsAcceptedOnlyAtCountZero) {
   AxesBench bench;
   bench.aim = AxesBench::deg(20, 10);
   bench.lie = [&](can::CanFrame& frame) {  // always at home, but 10 degrees off
@@ -168,7 +168,7 @@ TEST(AxesThatLie, HomeIsWhereTheCountIsZero) {
   EXPECT_FALSE(bench.result);
 }
 
-TEST(AxesThatLie, WhateverIsSaidTheJointsStayOnTheirWay) {
+TEST(AxesThatLie, FalseReportsNeverTakeTheJointsOffTheirPath) {
   std::mt19937 random(7);
   const auto draw = [&](int most) { return std::uniform_int_distribution<int>(0, most)(random); };
   for (int i = 0; i < 60; ++i) {

@@ -53,7 +53,7 @@ class EveryDriver : public ::testing::TestWithParam<std::size_t> {
   }
 };
 
-TEST_P(EveryDriver, ConstructsWithoutTouchingADeviceAndLeavesThreadsAndDescriptorsAsFound) {
+TEST_P(EveryDriver, ConstructsWithoutTouchingADeviceOrLeakingThreadsAndDescriptors) {
   const Time start = Time{} + std::chrono::seconds(1);
   const auto at = [&](int ms) { return start + milliseconds(ms); };
   const std::size_t descriptors = entries_in("/proc/self/fd"), threads = entries_in("/proc/self/task");
@@ -79,7 +79,7 @@ TEST_P(EveryDriver, ConstructsWithoutTouchingADeviceAndLeavesThreadsAndDescripto
   EXPECT_EQ(entries_in("/proc/self/task"), threads);
 }
 
-TEST_P(EveryDriver, StatesBoundsThatACycleCanLiveWith) {
+TEST_P(EveryDriver, StatesWorkableTimeBounds) {
   const auto driver = kind().alone();
   const DriverBounds bounds = driver->bounds();
   const bool is_written = driver->level_output() != nullptr || driver->mover() != nullptr;
@@ -91,7 +91,7 @@ TEST_P(EveryDriver, StatesBoundsThatACycleCanLiveWith) {
   EXPECT_EQ(bounds.read > Duration{}, is_read);
 }
 
-TEST_P(EveryDriver, MovesItsPeerToTheSetpointAndReadsBackTheSame) {
+TEST_P(EveryDriver, MovesItsPeerToTheSetpointAndReadsItBack) {
   const auto subject = activated();
   const Time start = subject->now;
   for (const double drive : {0.0, 1.0, 0.37, 0.5, 0.001}) {
@@ -107,14 +107,14 @@ TEST_P(EveryDriver, MovesItsPeerToTheSetpointAndReadsBackTheSame) {
   EXPECT_LE(health.errors, subject->answers_held_up()) << health.detail;
 }
 
-TEST_P(EveryDriver, RefusesWhatCannotBeSentAndSendsNothing) {
+TEST_P(EveryDriver, RefusesImpossibleSetpointsAndSendsNothing) {
   const auto subject = activated();
   const std::uint64_t sent = subject->bus().sent;
   EXPECT_EQ(subject->bad_requests_taken(), std::vector<std::string>{});
   EXPECT_EQ(subject->bus().sent, sent);
 }
 
-TEST_P(EveryDriver, ReturnsWithinItsBoundWhateverItsPeerDoes) {
+TEST_P(EveryDriver, ReturnsWithinItsBoundUnderEveryPeerFault) {
   for (const sim::FaultKind fault : {sim::FaultKind::silent, sim::FaultKind::slow, sim::FaultKind::garbled,
                                      sim::FaultKind::lost, sim::FaultKind::dead}) {
     // A driver that waits too long does so every time; a busy machine does so only for a moment.
@@ -130,7 +130,7 @@ TEST_P(EveryDriver, ReturnsWithinItsBoundWhateverItsPeerDoes) {
   }
 }
 
-TEST_P(EveryDriver, IsFaultedInTimeWhenItsPeerGoesAndComesBackByItselfWithTheCurrentSetpoint) {
+TEST_P(EveryDriver, FaultsInTimeWhenItsPeerGoesAndRecoversWithTheCurrentSetpoint) {
   const auto subject = activated();
   if (!subject->bounds.notices_loss) GTEST_SKIP() << "declares that it cannot notice";
   subject->settle(0.25, 10);
@@ -184,7 +184,7 @@ TEST_P(EveryDriver, ResumesAfterGarbledAnswers) {
   EXPECT_TRUE(reaches(*subject, 0.5)) << subject->bus().detail;
 }
 
-TEST_P(EveryDriver, LeavesWhatWasAgreedWhenItStopsAndStartsAgain) {
+TEST_P(EveryDriver, LeavesTheAgreedStateWhenItStopsAndRestarts) {
   const auto subject = activated();
   for (const double drive : {0.5, 0.25}) {
     ASSERT_TRUE(reaches(*subject, drive)) << subject->bus().detail;
@@ -199,7 +199,7 @@ TEST_P(EveryDriver, LeavesWhatWasAgreedWhenItStopsAndStartsAgain) {
   EXPECT_TRUE(reaches(*subject, 0.75)) << subject->bus().detail;
 }
 
-TEST_P(EveryDriver, OfWhichThereAreTwoGoTheirOwnWays) {
+TEST_P(EveryDriver, KeepsTwoInstancesIndependent) {
   const auto one = activated(), other = activated();
   for (int i = 0; i < kMaxCycles && !(i >= 8 && one->at(0.25) && other->at(0.75)); ++i) {
     one->cycle(0.25);

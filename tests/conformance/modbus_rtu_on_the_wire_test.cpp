@@ -104,7 +104,7 @@ Rig three_meters() {
 
 class LineFault : public ::testing::TestWithParam<std::pair<sim::FaultKind, double>> {};
 
-TEST_P(LineFault, GivesNoWrongReadingAndIsOverAsSoonAsItEnds) {
+TEST_P(LineFault, GivesNoWrongReadingAndClearsAsSoonAsItEnds) {
   RealLine line(three_meters());
   line.far.faults().set("b", sim::FaultKind::lying, true, 0.5);
   line.far.faults().set("c", sim::FaultKind::lying, true, 3.0);
@@ -172,7 +172,7 @@ TEST(ModbusRtuLine, ReadsThroughNoiseAndPausesWithoutAFault) {
   }
 }
 
-TEST(ModbusRtuLine, RepeatsAtOnceWhatWasSpoiledOnTheWire) {
+TEST(ModbusRtuLine, RepeatsASpoiledRequestAtOnce) {
   Rig rig = line_rig();
   add_meter(rig, "a", 1, 2);
   RealLine line(rig);
@@ -184,7 +184,7 @@ TEST(ModbusRtuLine, RepeatsAtOnceWhatWasSpoiledOnTheWire) {
   EXPECT_EQ(line.health("a").detail, "protocol: unit 1: garbled answer: an answer with a wrong checksum");
 }
 
-TEST(ModbusRtuLine, SaysWhatToDoAboutAnAdapterThatIsNotThere) {
+TEST(ModbusRtuLine, ReportsTheRemedyForAMissingAdapter) {
   Rig rig = line_rig();
   add_modbus(rig, "dimmer", 1, 0);
   const auto driver = find_driver("modbus_rtu")->make(rig, 0, std::nullopt);
@@ -196,7 +196,7 @@ TEST(ModbusRtuLine, SaysWhatToDoAboutAnAdapterThatIsNotThere) {
             "device (names in /dev/serial/by-id stay)");
 }
 
-TEST(ModbusRtuLine, SaysSoWhenAPortDoesNotTakeItsSettings) {
+TEST(ModbusRtuLine, ReportsAPortThatRejectsItsSettings) {
   Rig rig = line_rig();
   add_modbus(rig, "dimmer", 1, 0);
   const FarEnd far(rig);
@@ -215,7 +215,7 @@ TEST(ModbusRtuLine, SaysSoWhenAPortDoesNotTakeItsSettings) {
   EXPECT_EQ(plain->health(at_ms(0)).at(0).life, Life::active) << plain->health(at_ms(0)).at(0).detail;
 }
 
-TEST(ModbusRtuLine, GoesOnWhenTheAdapterIsPluggedInAgain) {
+TEST(ModbusRtuLine, ResumesWhenTheAdapterIsPluggedBackIn) {
   RealLine line(three_meters());
   line.run(0.5, 0.25);
   ASSERT_TRUE(line.all_at(0.25));
@@ -274,7 +274,7 @@ std::string luxmeter(int unit) {
          "\nregister_map = \"../register-maps/dfrobot-sen0644.toml\"\n";
 }
 
-TEST(ModbusProducts, EightOutputsAreOneRequestAndTheMeterReadsThem) {
+TEST(ModbusProducts, EightOutputsTakeOneRequestAndTheMeterReadsThem) {
   RealLine line(product_rig("modbus_rtu", fixtures("waveshare-analog-output-8ch-b", 1, 8) + luxmeter(2)));
   ASSERT_EQ(line.rig.fixtures.size(), 8u);
   EXPECT_EQ(line.rig.luxmeters[0].range_lx, 200000);
@@ -296,7 +296,7 @@ TEST(ModbusProducts, TheDimmersFadeTimeIsSetUpBeforeItsFirstLevel) {
 
 class Watchdog : public ::testing::TestWithParam<const char*> {};
 
-TEST_P(Watchdog, IsArmedAndPutsTheLightOutWhenNobodyWrites) {
+TEST_P(Watchdog, IsArmedAndPutsTheLightOutWhenWritesStop) {
   RealLine line(product_rig(GetParam(), fixtures("wago-750-559", 1, 4)));
   line.run(2.5, 0.5);
   EXPECT_TRUE(line.all_at(0.5)) << "refreshing keeps it alight: " << line.health("the-bus").detail;
@@ -308,7 +308,7 @@ TEST_P(Watchdog, IsArmedAndPutsTheLightOutWhenNobodyWrites) {
   EXPECT_TRUE(line.all_at(0.75));
 }
 
-TEST_P(Watchdog, IsArmedAgainAfterThePowerWasLost) {
+TEST_P(Watchdog, IsArmedAgainAfterAPowerLoss) {
   RealLine line(product_rig(GetParam(), fixtures("wago-750-559", 1, 2)));
   line.run(0.5, 0.5);
   ASSERT_TRUE(line.all_at(0.5));
@@ -326,7 +326,7 @@ TEST_P(Watchdog, IsArmedAgainAfterThePowerWasLost) {
 INSTANTIATE_TEST_SUITE_P(Over, Watchdog, ::testing::Values("modbus_rtu", "modbus_tcp"),
                          [](const auto& which) { return std::string(which.param); });
 
-TEST(ModbusProducts, AGapThatADeviceWantsIsKept) {
+TEST(ModbusProducts, KeepTheGapThatADeviceNeeds) {
   Rig rig = product_rig("modbus_rtu", luxmeter(1) + fixtures("waveshare-analog-output-8ch-b", 2, 1));
   auto slow = std::make_shared<RegisterMap>(*rig.luxmeters[0].patch.map);
   slow->shortest_gap = milliseconds(60);

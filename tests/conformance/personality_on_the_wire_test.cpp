@@ -66,7 +66,7 @@ void light_and_turn(const Rig& rig, double slack) {
   }
 }
 
-TEST(PersonalityOnTheWire, EachSampleGivesTheLightAndTheAimThatWereMeant) {
+TEST(PersonalityOnTheWire, EverySampleGivesTheIntendedLightAndAim) {
   constexpr double k8Bit = 0.5 / 255 + 1e-9, k16Bit = 0.5 / 65535 + 1e-9;
   light_and_turn(rig_of("Clay Paky@Alpha Spot QWO 800.gdtf", "Standard Mode (32 ch)"), k16Bit);
   light_and_turn(rig_of("Robe@BMFL Spot.gdtf", "Mode 1 - Standard 16 bit"), k16Bit);
@@ -80,7 +80,7 @@ TEST(PersonalityOnTheWire, EachSampleGivesTheLightAndTheAimThatWereMeant) {
 }
 
 // Alpha Spot QWO 800: 55° at 0, 11° at 255.
-TEST(PersonalityOnTheWire, AZoomMakesTheBeamThatWasMeant) {
+TEST(PersonalityOnTheWire, AZoomGivesTheIntendedBeam) {
   const Rig rig = rig_of("Clay Paky@Alpha Spot QWO 800.gdtf", "Standard Mode (32 ch)", "zoom_speed_deg_s = 12\n",
                          "lumens = 1000\nzoom_deg = [5, 40]");
   ASSERT_EQ(rig.fixtures.size(), 1u);
@@ -102,7 +102,7 @@ TEST(PersonalityOnTheWire, AZoomMakesTheBeamThatWasMeant) {
   }
 }
 
-TEST(PersonalityOnTheWire, EmittersAreMixedOneByOne) {
+TEST(PersonalityOnTheWire, EmittersAreMixedIndividually) {
   const std::string emitters =
       "emitters = [{ name = \"red\", lumens = 100 }, { name = \"green\", lumens = 300 }, { name = \"blue\", lumens = "
       "50 "
@@ -121,7 +121,7 @@ TEST(PersonalityOnTheWire, EmittersAreMixedOneByOne) {
   }
 }
 
-TEST(PersonalityOnTheWire, AShutShutterAStrobeAndALampThatIsOffAreDark) {
+TEST(PersonalityOnTheWire, AClosedShutterAStrobeAndAnUnstruckLampAreDark) {
   const Rig rig = rig_of("Clay Paky@Alpha Spot QWO 800.gdtf", "Standard Mode (32 ch)");
   DmxPatchbay bay(rig, 0);
   const LevelCommand full[] = {{0, 1.0}};

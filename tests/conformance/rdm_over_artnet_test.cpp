@@ -104,7 +104,7 @@ TEST_F(RdmOverArtnet, ReadsTheWholeProfileOfEachFixture) {
   EXPECT_EQ(head->lamp, rdm::LampState::off);
 }
 
-TEST_F(RdmOverArtnet, AStartAddressThatIsSetMovesWhereTheLampListens) {
+TEST_F(RdmOverArtnet, SettingAStartAddressMovesWhereTheLampListens) {
   const auto uids = table();
   ASSERT_EQ(uids.size(), 2u);
   EXPECT_NEAR(drive_by_slot(5, 255), 1, 1e-9);
@@ -119,7 +119,7 @@ TEST_F(RdmOverArtnet, AStartAddressThatIsSetMovesWhereTheLampListens) {
   EXPECT_NE(refused.error().detail.find("out of range"), std::string::npos);
 }
 
-TEST_F(RdmOverArtnet, SurvivesAnswersThatAreLostGarbledOrLate) {
+TEST_F(RdmOverArtnet, SurvivesLostGarbledAndLateAnswers) {
   const auto uids = table();
   ASSERT_EQ(uids.size(), 2u);
   const rdm::Request hours{uids[0], rdm::CommandClass::get, rdm::Pid::device_hours};

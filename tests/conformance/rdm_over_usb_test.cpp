@@ -60,7 +60,7 @@ struct WidgetBench {
 
 std::set<rdm::Uid> set_of(const std::vector<rdm::Uid>& uids) { return {uids.begin(), uids.end()}; }
 
-TEST(RdmOverUsb, FindsAllThatAnswerAtOnce) {
+TEST(RdmOverUsb, FindsAllRespondersThatAnswerAtOnce) {
   WidgetBench bench;
   const std::set<rdm::Uid> wanted = bench.add(40);
   const auto link = bench.open();
@@ -72,7 +72,7 @@ TEST(RdmOverUsb, FindsAllThatAnswerAtOnce) {
   EXPECT_TRUE(found->unmutable.empty());
 }
 
-TEST(RdmOverUsb, AsksAndSetsWhatADeviceHas) {
+TEST(RdmOverUsb, ReadsAProfileAndSetsAStartAddress) {
   WidgetBench bench;
   const rdm::Uid uid = *bench.add(3).begin();
   const auto link = bench.open();
@@ -115,7 +115,7 @@ TEST(RdmOverUsb, SurvivesGarbledAnswersAndSilence) {
   EXPECT_EQ(set_of(found->found), others);
 }
 
-TEST(RdmOverUsb, SaysWhenTheWidgetIsPulledOutOrIsNone) {
+TEST(RdmOverUsb, ReportsAnUnpluggedOrSilentWidget) {
   WidgetBench bench;
   bench.add(2);
   const auto link = bench.open();
@@ -133,7 +133,7 @@ TEST(RdmOverUsb, SaysWhenTheWidgetIsPulledOutOrIsNone) {
   EXPECT_NE(opened.error().detail.find("ENTTEC DMX USB Pro"), std::string::npos);
 }
 
-TEST(RdmOverUsb, FirmwareWithoutRdmFindsNobodyAndCanBeTold) {
+TEST(RdmOverUsb, FirmwareWithoutRdmFindsNoDeviceAndIsFlagged) {
   WidgetBench bench;
   bench.widget.connect({});
   const auto link = bench.open();

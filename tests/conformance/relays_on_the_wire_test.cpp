@@ -110,7 +110,7 @@ TEST_P(RelaysOnTheWire, SwitchTheirLampsBesideADimmer) {
   EXPECT_EQ(drives[3], 1);
 }
 
-TEST_P(RelaysOnTheWire, OfAProductThatKnowsOneAtATimeAreSwitchedOneByOne) {
+TEST_P(RelaysOnTheWire, AreSwitchedOneByOneWhereAProductTakesOneAtATime) {
   RelayBench bench(GetParam(), "largest_write = 1");
   bench.cycles(4, {1, 1, 1, 1});
   EXPECT_TRUE(bench.last) << bench.last.error().detail;
@@ -119,7 +119,7 @@ TEST_P(RelaysOnTheWire, OfAProductThatKnowsOneAtATimeAreSwitchedOneByOne) {
 }
 
 // The simulated unit sets every failure bit of a burnt-out lamp, its own and the common one.
-TEST_P(RelaysOnTheWire, SayThatALampHasBurntOutAndThatItIsWellAgain) {
+TEST_P(RelaysOnTheWire, ReportABurntOutLampAndItsRecovery) {
   RelayBench bench(GetParam());
   bench.cycles(15, {1, 1, 1, 1});
   for (std::size_t f = 0; f < 4; ++f) EXPECT_EQ(bench.detail_of(f), "");
@@ -135,7 +135,7 @@ TEST_P(RelaysOnTheWire, SayThatALampHasBurntOutAndThatItIsWellAgain) {
   EXPECT_EQ(bench.far.drives()[1], 1);
 }
 
-TEST_P(RelaysOnTheWire, FallSilentAndComeBackWithWhatIsAskedNow) {
+TEST_P(RelaysOnTheWire, RecoverFromSilenceWithTheCurrentLevels) {
   RelayBench bench(GetParam());
   bench.cycles(5, {1, 0, 0, 0});
   bench.far.faults().set("lamp-1", sim::FaultKind::unpowered, true);

@@ -71,7 +71,7 @@ struct ProBench {
   Bench bench;
 };
 
-TEST(EnttecProDriver, SetsTheWidgetUpAndLightsWhatIsAsked) {
+TEST(EnttecProDriver, SetsTheWidgetUpAndSendsTheLevels) {
   ProBench pro({{"rate_hz", std::int64_t{30}}, {"break_us", std::int64_t{200}}, {"mab_us", std::int64_t{100}}});
   pro.bench.cycles(20, 1.0);
   EXPECT_EQ(pro.bench.slot(1), 255);
@@ -85,7 +85,7 @@ TEST(EnttecProDriver, SetsTheWidgetUpAndLightsWhatIsAsked) {
   EXPECT_EQ(pro.widget.dropped(), 0u);
 }
 
-TEST(EnttecProDriver, NeverStopsTheOutputOfAWidgetThatIsLive) {
+TEST(EnttecProDriver, NeverStopsTheOutputOfALiveWidget) {
   ProBench pro;
   for (int i = 0; i < 44 * 20; ++i) (void)pro.bench.cycle((i % 100) / 100.0);
   EXPECT_EQ(pro.widget.stops(), 0u);
@@ -93,14 +93,14 @@ TEST(EnttecProDriver, NeverStopsTheOutputOfAWidgetThatIsLive) {
   EXPECT_LE(pro.widget.frames(), 20u * 40u + 2u);
 }
 
-TEST(EnttecProDriver, WorksWithAnOriginalThatHasNoNames) {
+TEST(EnttecProDriver, WorksWithAnOriginalWidgetWithoutNames) {
   ProBench pro;
   pro.widget.set_character({.says_names = false});
   pro.bench.cycles(20, 0.5);
   EXPECT_EQ(pro.bench.slot(1), 128);
 }
 
-TEST(EnttecProDriver, IsFaultedWhenTheWidgetFallsSilentAndWhileItAnswersGarbage) {
+TEST(EnttecProDriver, FaultsWhileTheWidgetIsSilentOrAnswersGarbage) {
   for (const sim::EnttecWidget::Character& bad :
        {sim::EnttecWidget::Character{.silent = true}, sim::EnttecWidget::Character{.wrong_end = true}}) {
     ProBench pro;
@@ -117,7 +117,7 @@ TEST(EnttecProDriver, IsFaultedWhenTheWidgetFallsSilentAndWhileItAnswersGarbage)
   }
 }
 
-TEST(EnttecProDriver, NoiseInTheStreamDoesNoHarm) {
+TEST(EnttecProDriver, ToleratesNoiseInTheStream) {
   ProBench pro;
   pro.widget.set_character({.noise = {0x00, 0x7e, 0x03, 0xff, 0xff, 0xe7}});
   pro.bench.cycles(44 * 5, 0.5);
@@ -125,7 +125,7 @@ TEST(EnttecProDriver, NoiseInTheStreamDoesNoHarm) {
   EXPECT_EQ(pro.bench.health().errors, 0u);
 }
 
-TEST(EnttecProDriver, SaysThatAPlainCableIsNoWidget) {
+TEST(EnttecProDriver, ReportsThatAPlainCableIsNoWidget) {
   sim::DmxLine line;
   sim::FtdiChip chip(line, "FT232R USB UART", "A1", true);
   Bench bench(chip, usb_rig("enttec_pro"), make_enttec_pro_over);
@@ -134,7 +134,7 @@ TEST(EnttecProDriver, SaysThatAPlainCableIsNoWidget) {
   EXPECT_NE(bench.health().detail.find("open_dmx"), std::string::npos) << bench.health().detail;
 }
 
-TEST(EnttecProDriver, LeavesTheNewestLevelsBehindThatTheWidgetThenRepeats) {
+TEST(EnttecProDriver, LeavesTheNewestLevelsForTheWidgetToRepeat) {
   ProBench pro;
   pro.bench.cycles(20, 0.5);
   // Two levels within one period of the widget's rate: the second waits and is sent with the goodbye.
@@ -158,7 +158,7 @@ struct OpenBench {
   Bench bench;
 };
 
-TEST(OpenDmxDriver, PutsOutWholePacketsBehindABreakAndAMark) {
+TEST(OpenDmxDriver, SendsWholePacketsAfterABreakAndAMark) {
   for (const int rate : {20, 30, 40}) {
     OpenBench open({{"rate_hz", std::int64_t{rate}}});
     for (int i = 0; i < 44 * 10; ++i) (void)open.bench.cycle((i % 256) / 255.0);
@@ -173,7 +173,7 @@ TEST(OpenDmxDriver, PutsOutWholePacketsBehindABreakAndAMark) {
   }
 }
 
-TEST(OpenDmxDriver, AsksForTheLineThatDmxNeedsAndOrdersBreakMarkData) {
+TEST(OpenDmxDriver, SetsTheLineUpForDmxAndSendsBreakMarkData) {
   OpenBench open;
   open.bench.cycles(10, 0.5);
   EXPECT_EQ(open.chip.settings().divisor, 12);
@@ -186,7 +186,7 @@ TEST(OpenDmxDriver, AsksForTheLineThatDmxNeedsAndOrdersBreakMarkData) {
   EXPECT_EQ(open.bench.slot(1), 128);
 }
 
-TEST(OpenDmxDriver, FallsSilentWhenNobodySendsAnyMore) {
+TEST(OpenDmxDriver, FallsSilentAfterDeactivation) {
   OpenBench open;
   open.bench.cycles(10, 0.5);
   EXPECT_EQ(open.bench.slot(1), 128);
@@ -195,7 +195,7 @@ TEST(OpenDmxDriver, FallsSilentWhenNobodySendsAnyMore) {
   EXPECT_EQ(open.bench.slot(1), -1);
 }
 
-TEST(OpenDmxDriver, LosesAPacketToAControlRequestThatIsLate) {
+TEST(OpenDmxDriver, LosesAPacketToALateControlRequest) {
   OpenBench open;
   open.bench.cycles(10, 0.5);
   open.bench.cable.hangs = 1;
@@ -205,7 +205,7 @@ TEST(OpenDmxDriver, LosesAPacketToAControlRequestThatIsLate) {
   EXPECT_EQ(open.bench.health().errors, 0u);
 }
 
-TEST(OpenDmxDriver, IsFaultedWhenTransfersHangAndComesBack) {
+TEST(OpenDmxDriver, FaultsWhenTransfersHangAndRecovers) {
   OpenBench open;
   open.bench.cycles(10, 0.5);
   open.bench.cable.hangs = 1000;
@@ -222,7 +222,7 @@ struct UdmxBench {
   Bench bench;
 };
 
-TEST(UdmxDriver, TellsEverythingOnceAndThenOnlyWhatChanges) {
+TEST(UdmxDriver, SendsEverySlotOnceAndThenOnlyChanges) {
   UdmxBench u;
   u.bench.cycles(5, 0.5);
   EXPECT_EQ(u.widget.bytes(), 512u);
@@ -251,7 +251,7 @@ TEST(UdmxDriver, NeverSplitsA16BitValue) {
   }
 }
 
-TEST(UdmxDriver, CountsAStallAndTellsEverythingAgain) {
+TEST(UdmxDriver, CountsAStallAndSendsTheLevelsAgain) {
   UdmxBench u;
   u.bench.cycles(5, 0.5);
   u.bench.cable.stalls = 1;
@@ -262,7 +262,7 @@ TEST(UdmxDriver, CountsAStallAndTellsEverythingAgain) {
   EXPECT_EQ(u.bench.cable.closed, 0);
 }
 
-TEST(UdmxDriver, ThreeOtherErrorsInARowAreALostDeviceAndTwoAreNot) {
+TEST(UdmxDriver, CountsADeviceAsLostAfterThreeOtherErrorsInARow) {
   UdmxBench u;
   u.bench.cycles(5, 0.5);
   u.bench.cable.failures = 2;
@@ -276,7 +276,7 @@ TEST(UdmxDriver, ThreeOtherErrorsInARowAreALostDeviceAndTwoAreNot) {
   EXPECT_EQ(u.bench.slot(1), 191);
 }
 
-TEST(UdmxDriver, CancelsATransferThatHangs) {
+TEST(UdmxDriver, CancelsAHangingTransfer) {
   UdmxBench u;
   u.bench.cycles(5, 0.5);
   u.bench.cable.hangs = 1;
@@ -286,7 +286,7 @@ TEST(UdmxDriver, CancelsATransferThatHangs) {
   EXPECT_EQ(u.bench.slot(1), 191);
 }
 
-TEST(UdmxDriver, SaysThatRefusedTransfersHoldTheLightAndIsWellAgainByItself) {
+TEST(UdmxDriver, ReportsLightDelayedByRefusedTransfersAndRecoversByItself) {
   UdmxBench u;
   u.bench.cycles(5, 0.5);
   u.bench.cable.stalls = 60;  // about 1.4 s, too short for a lost device
@@ -304,7 +304,7 @@ TEST(UdmxDriver, SaysThatRefusedTransfersHoldTheLightAndIsWellAgainByItself) {
   EXPECT_EQ(u.bench.cable.closed, 0);
 }
 
-TEST(UdmxDriver, SaysThatTransfersHangNowAndThenThoughNeverThreeInARow) {
+TEST(UdmxDriver, ReportsOccasionalHangingTransfersEvenIfNeverThreeInARow) {
   UdmxBench u;
   u.bench.cycles(5, 0.5);
   bool known = false;
@@ -318,7 +318,7 @@ TEST(UdmxDriver, SaysThatTransfersHangNowAndThenThoughNeverThreeInARow) {
   EXPECT_EQ(u.bench.slot(1), 191);
 }
 
-TEST(UdmxDriver, CountsRefusalsThatNobodySeesAndIsWell) {
+TEST(UdmxDriver, CountsHarmlessRefusalsAndStaysActive) {
   UdmxBench u;
   for (int i = 0; i < 44 * 20; ++i) {
     if (i % 3 == 0) u.bench.cable.stalls = 1;
@@ -328,7 +328,7 @@ TEST(UdmxDriver, CountsRefusalsThatNobodySeesAndIsWell) {
   EXPECT_GT(u.bench.health().errors, 200u);
 }
 
-TEST(UdmxDriver, TellsAWidgetThatForgotEverythingWithinASecond) {
+TEST(UdmxDriver, RefreshesAWidgetThatForgotEverythingWithinASecond) {
   UdmxBench u;
   u.bench.cycles(10, 0.5);
   u.widget.power_on(u.bench.cable.now);  // a supply dip that USB did not see
@@ -348,7 +348,7 @@ TEST(UdmxDriver, LeavesTheNewestLevelsBehind) {
   EXPECT_EQ(u.bench.slot(2), 255);
 }
 
-TEST(UsbDrivers, TouchNoLightBeforeTheFirstWrite) {
+TEST(UsbDrivers, SendNothingBeforeTheFirstWrite) {
   UdmxBench u;
   u.bench.driver->deactivate(u.bench.cable.now);
   EXPECT_EQ(u.widget.transfers(), 0u);
@@ -357,7 +357,7 @@ TEST(UsbDrivers, TouchNoLightBeforeTheFirstWrite) {
   EXPECT_EQ(pro.widget.frames(), 0u);
 }
 
-TEST(UsbDrivers, UnpluggedAreFaultedAtOnceAndBackWithTheNewestLevels) {
+TEST(UsbDrivers, FaultAtOnceWhenUnpluggedAndReturnWithTheNewestLevels) {
   const auto replug = [](Bench& bench) {
     bench.cycles(20, 0.5);
     ASSERT_EQ(bench.health().life, Life::active) << bench.health().detail;

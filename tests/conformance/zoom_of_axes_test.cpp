@@ -55,7 +55,7 @@ Joints aimed(double pan_deg, double tilt_deg, double beam_deg) {
   return {rad_from_deg(pan_deg), rad_from_deg(tilt_deg), rad_from_deg(beam_deg)};
 }
 
-TEST(ZoomOfAxes, GoesOutByDmxAndPanAndTiltDoNot) {
+TEST(ZoomOfAxes, GoesOutByDmxButPanAndTiltDoNot) {
   const Checked<Rig> rig = parse_rig(kZoomingAxes, "stage.toml", ".");
   ASSERT_TRUE(rig) << rig.error().front().text();
   ASSERT_TRUE(rig->fixtures[0].range.zooms());
@@ -141,7 +141,7 @@ struct MadeLamp {
   std::filesystem::path folder;
 };
 
-TEST(ZoomOfAxes, IsThatOfItsMakersFile) {
+TEST(ZoomOfAxes, FollowsTheMakersFile) {
   const MadeLamp lamp;
   const Checked<Rig> rig = lamp.rig();
   ASSERT_TRUE(rig) << rig.error().front().text();
@@ -167,7 +167,7 @@ TEST(ZoomOfAxes, IsThatOfItsMakersFile) {
       << rig->fixtures[0].mode->told.back();
 }
 
-TEST(ZoomOfAxes, OfItsMakersFileIsHeldWhereTheLuminaireDoesNotZoomAndRefusedWhereItCannot) {
+TEST(ZoomOfAxes, IsHeldForAFixedBeamAndRefusedOutsideTheMakersRange) {
   const MadeLamp lamp;
   const Checked<Rig> held = lamp.rig("", "");
   ASSERT_TRUE(held) << held.error().front().text();

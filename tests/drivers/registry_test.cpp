@@ -36,7 +36,7 @@ TEST(Registry, ReportsTheProblemsOfEveryBus) {
   EXPECT_EQ(check_buses(rig).size(), 2u);
 }
 
-TEST(Registry, EveryDefaultOfAnOptionIsGoodItself) {
+TEST(Registry, EveryDefaultOptionIsValid) {
   for (const DriverEntry& entry : drivers()) {
     Bus bus = bus_of(std::string(entry.name));
     for (const OptionDoc& doc : entry.options) {

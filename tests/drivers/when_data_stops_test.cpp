@@ -9,7 +9,7 @@
 namespace luxrig {
 namespace {
 
-TEST(WhenDataStops, EveryDriverThatCarriesLampsSaysSomething) {
+TEST(WhenDataStops, IsStatedByEveryDriverThatCarriesLamps) {
   for (const DriverEntry& entry : drivers()) {
     if (entry.name == "canopen") {
       EXPECT_EQ(entry.when_data_stops, nullptr);
@@ -29,7 +29,7 @@ TEST(WhenDataStops, EveryDriverThatCarriesLampsSaysSomething) {
   }
 }
 
-TEST(WhenDataStops, IsAsTheStandardOrTheDeviceHasIt) {
+TEST(WhenDataStops, FollowsTheStandardOrTheDevice) {
   const auto lamp_on = [](const char* driver) {
     Rig rig = rig_with(bus_of(driver));
     add_dmx(rig, "lamp", 1, 1);
@@ -42,7 +42,7 @@ TEST(WhenDataStops, IsAsTheStandardOrTheDeviceHasIt) {
   EXPECT_EQ(told(lamp_on("open_dmx")), "noticed after 1 s; then its maker's choice");
 }
 
-TEST(WhenDataStops, OfAModbusProductIsWhatItsRegisterMapSays) {
+TEST(WhenDataStops, OfAModbusProductFollowsItsRegisterMap) {
   Rig rig = rig_with(bus_of("modbus_tcp", {{"host", std::string("127.0.0.1")}}));
   auto map = std::make_shared<RegisterMap>();
   map->name = "product";

@@ -281,7 +281,7 @@ TEST(Promises, HoldThroughRandomCommandsFaultsKillsAndDiskErrors) {
 }
 
 // A value frozen in mid-fade is too low, yet plausible enough to be believed.
-TEST(Promises, HoldWhenAMeterFreezesInTheMiddleOfAFade) {
+TEST(Promises, HoldWhenAMeterFreezesDuringAFade) {
   for (std::uint64_t seed = 1; seed <= 120; ++seed) {
     const double after_s = 0.1 * static_cast<double>(seed % 60);
     const std::vector<Step> steps = {{Act::apply, 0, 0},

@@ -6,7 +6,7 @@
 namespace luxrig::scenarios {
 namespace {
 
-TEST(ByHandInTheHall, ALevelStaysTheOtherGoalsAreMetAndNoLimitBreaksForTenSeeds) {
+TEST(ByHandInTheHall, KeepsALevelMeetsOtherGoalsAndHoldsLimitsForTenSeeds) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     ClosedLoop loop(make_hall(seed), seeded(seed));
     if (seed % 2 == 0) loop.solve_late(1.5);
@@ -30,7 +30,7 @@ TEST(ByHandInTheHall, ALevelStaysTheOtherGoalsAreMetAndNoLimitBreaksForTenSeeds)
   }
 }
 
-TEST(ByHandInTheHall, FullByHandUnderALimitIsAsMuchAsTheLimitLeavesAtEveryInstant) {
+TEST(ByHandInTheHall, FullLevelsByHandGiveAsMuchAsALimitAllows) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     ClosedLoop loop(make_hall(seed), seeded(seed));
     if (seed % 2 == 0) loop.solve_late(1.5);
@@ -49,7 +49,7 @@ TEST(ByHandInTheHall, FullByHandUnderALimitIsAsMuchAsTheLimitLeavesAtEveryInstan
   }
 }
 
-TEST(ByHandInTheHall, AGoalSetByHandIsCorrectedToAndTheReleaseGoesBack) {
+TEST(ByHandInTheHall, AGoalSetByHandIsMetAndItsReleaseRestoresTheOriginal) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     ClosedLoop loop(make_hall(seed), seeded(seed));
     if (seed % 2 == 0) loop.solve_late(1.5);
@@ -73,7 +73,7 @@ TEST(ByHandInTheHall, AGoalSetByHandIsCorrectedToAndTheReleaseGoesBack) {
 }
 
 // A rig file read again: the light goes on, limits hold, and the new goals apply.
-TEST(ByHandInTheHall, AnExchangedRigFadesToItsNewGoalsWithinItsNewLimits) {
+TEST(ByHandInTheHall, AReplacedRigFadesToItsNewGoalsWithinItsNewLimits) {
   for (const bool same_light : {true, false}) {
     ClosedLoop loop(make_hall(3), seeded(3));
     loop.apply();

@@ -6,7 +6,7 @@
 namespace luxrig::scenarios {
 namespace {
 
-TEST(Show, BringsEveryMeteredGoalWithinThreePercentAndNeverExceedsALimitForFiftySeeds) {
+TEST(Show, MeetsMeteredGoalsWithinThreePercentAndKeepsLimitsForFiftySeeds) {
   double worst_error = 0, worst_share = 0, longest_s = 0;
   int max_rounds = 0;
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
@@ -35,7 +35,7 @@ TEST(Show, BringsEveryMeteredGoalWithinThreePercentAndNeverExceedsALimitForFifty
               100 * worst_error, worst_share, longest_s, max_rounds);
 }
 
-TEST(Show, GoesAsNearToAGoalAtItsLimitAsTheMetersToleranceLetsItAndSaysSo) {
+TEST(Show, ApproachesAGoalAtItsLimitWithinTheMetersTolerance) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     ClosedLoop loop(make_hall(seed, {.work_goal_lx = 50}), seeded(seed));
     loop.apply();
@@ -57,7 +57,7 @@ TEST(Show, GoesAsNearToAGoalAtItsLimitAsTheMetersToleranceLetsItAndSaysSo) {
   }
 }
 
-TEST(Show, NeverExceedsALimitThatNoMeterWatches) {
+TEST(Show, NeverExceedsAnUnmeteredLimit) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     Hall hall = make_hall(seed);
     for (std::size_t p = 20; p < 24; ++p) hall.rig.points[p].max_lx = 0.9 * *hall.rig.points[p].goal_lx;

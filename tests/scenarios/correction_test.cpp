@@ -6,7 +6,7 @@
 namespace luxrig::scenarios {
 namespace {
 
-TEST(Show, FollowsALampThatAgesByAnotherCorrection) {
+TEST(Show, CorrectsForAgeingLamps) {
   ClosedLoop loop(make_hall(3), seeded(3));
   loop.apply();
   ASSERT_TRUE(loop.run_until(Phase::holding, 30));
@@ -35,7 +35,7 @@ TEST(Show, LeavesLevelsAloneWhileNothingDrifts) {
   EXPECT_EQ(loop.show.program().revision, revision) << loop.describe();
 }
 
-TEST(Show, AppliedAgainDuringEveryPhaseConvergesAndKeepsTheLimits) {
+TEST(Show, ConvergesWithinLimitsWhenReappliedDuringAnyPhase) {
   for (const double after_s : {0.5, 1.9, 2.2, 3.0, 3.7, 4.5, 7.0, 12.0}) {
     ClosedLoop loop(make_hall(5), seeded(5));
     loop.apply();

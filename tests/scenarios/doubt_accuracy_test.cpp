@@ -16,7 +16,7 @@ std::vector<double> scaled(std::vector<double> level, double share) {
   return level;
 }
 
-TEST(HonestMeters, AreNotAccusedAfterBigStepsOfLevel) {
+TEST(HonestMeters, AreNotDoubtedAfterLargeLevelSteps) {
   int accusations = 0;
   for (std::uint64_t seed = 1; seed <= 36; ++seed) {
     sim::Deviations deviations = seeded(seed);
@@ -61,7 +61,7 @@ TEST(AllMetersTogether, AreNotDoubtedInHonestHalls) {
   EXPECT_EQ(drift, 0);
 }
 
-TEST(AMeterThatDrifts, IsSaidToAndItsPointIsUnknown) {
+TEST(AMeterThatDrifts, IsReportedAndItsPointIsUnknown) {
   for (const double per_s : {0.003, -0.003}) {
     for (const bool all : {true, false}) {
       int said = 0;

@@ -59,7 +59,7 @@ TEST(ALateAnswer, ChangesNoLight) {
   }
 }
 
-TEST(AMeterThatLosesHalfItsAnswers, ChangesTheStateOnceAtMostInTenMinutes) {
+TEST(AMeterThatLosesHalfItsAnswers, ChangesTheStateAtMostOnceInTenMinutes) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     ClosedLoop loop(all_to_safe(seed), seeded(seed));
     loop.apply();
@@ -81,7 +81,7 @@ TEST(AMeterThatLosesHalfItsAnswers, ChangesTheStateOnceAtMostInTenMinutes) {
   }
 }
 
-TEST(ALyingMeter, IsFoundWithinTwoSecondsAllTheSame) {
+TEST(ALyingMeter, IsStillFoundWithinTwoSeconds) {
   double longest_s = 0;
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
     for (const double factor : {0.1, 0.5, 0.7, 1.4, 2.0, 10.0}) {
@@ -105,7 +105,7 @@ const Alarm* notice_of(const std::vector<Alarm>& alarms, const std::string& devi
   return nullptr;
 }
 
-TEST(ABypass, OfALyingMeterEndsTheSafeLookAndSaysWhatNobodyWatches) {
+TEST(ABypass, OfALyingMeterEndsTheSafeLookAndReportsWhatIsUnwatched) {
   ClosedLoop loop(all_to_safe(51), seeded(51));
   loop.apply();
   ASSERT_TRUE(loop.run_until(Phase::holding, 40)) << loop.describe();
@@ -143,7 +143,7 @@ class ABypassOfADimmer : public testing::TestWithParam<sim::FaultKind> {};
 INSTANTIATE_TEST_SUITE_P(Each, ABypassOfADimmer, testing::Values(sim::FaultKind::unpowered, sim::FaultKind::silent),
                          [](const auto& instance) { return std::string(sim::name_of(instance.param)); });
 
-TEST_P(ABypassOfADimmer, EndsTheSafeLookAndTheRestIsSolvedWithoutIt) {
+TEST_P(ABypassOfADimmer, EndsTheSafeLookAndSolvesTheRestWithoutIt) {
   ClosedLoop loop(all_to_safe(52), seeded(52));
   loop.apply();
   ASSERT_TRUE(loop.run_until(Phase::holding, 40)) << loop.describe();
@@ -175,7 +175,7 @@ TEST_P(ABypassOfADimmer, EndsTheSafeLookAndTheRestIsSolvedWithoutIt) {
   EXPECT_LE(loop.largest_step, kLargestStep);
 }
 
-TEST(ALampThatNoMeterSees, IsNotTakenAtItsWord) {
+TEST(ALampThatNoMeterSees, IsNotTrusted) {
   int met_by_unseen = 0, met = 0;
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     Hall hall = make_hall(seed);
@@ -206,7 +206,7 @@ TEST(ALampThatNoMeterSees, IsNotTakenAtItsWord) {
   EXPECT_GT(met, 0) << "what meters see is still claimed";
 }
 
-TEST(ALampWhoseDeviceSaysThatItHasBurntOut, LeavesItsPointsUnknownUntilItIsMended) {
+TEST(ALampWhoseDeviceSaysThatItHasBurntOut, LeavesItsPointsUnknownUntilItIsRepaired) {
   ClosedLoop loop(make_hall(53), seeded(53));
   loop.hall.rig.control.goal_tolerance = 0.3;
   loop.apply();
@@ -229,7 +229,7 @@ TEST(ALampWhoseDeviceSaysThatItHasBurntOut, LeavesItsPointsUnknownUntilItIsMende
   EXPECT_NE(point.reason.find("spot-10"), std::string::npos) << point.reason;
 }
 
-TEST(AllMetersTogether, OffByAQuarterFromTheStartAreNotBelievedWithoutAWord) {
+TEST(AllMetersTogether, OffByAQuarterFromTheStartAreReported) {
   int said = 0, met = 0;
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
     ClosedLoop loop(make_hall(seed), seeded(seed));

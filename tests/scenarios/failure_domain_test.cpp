@@ -15,7 +15,7 @@ bool only_alarm_is_of(const ClosedLoop& loop, const std::string& device) {
 }
 
 /// Works have meters, which watch their limits.
-TEST(FailureDomain, ADeadBusOfDimmersTakesItsLampsToTheSafeLookAndTheOthersStay) {
+TEST(FailureDomain, ADeadDimmerBusSendsOnlyItsLampsToTheSafeLook) {
   ClosedLoop loop(make_hall(31), seeded(31));
   loop.apply();
   ASSERT_TRUE(loop.run_until(Phase::holding, 30)) << loop.describe();
@@ -42,7 +42,7 @@ TEST(FailureDomain, ADeadBusOfDimmersTakesItsLampsToTheSafeLookAndTheOthersStay)
   EXPECT_LE(loop.largest_step, kLargestStep);
 }
 
-TEST(FailureDomain, OneDeadDimmerIsOneAlarmAndSendsNoOtherLampAnywhere) {
+TEST(FailureDomain, OneDeadDimmerRaisesOneAlarmAndMovesNoOtherLamp) {
   ClosedLoop loop(make_hall(32), seeded(32));
   loop.apply();
   ASSERT_TRUE(loop.run_until(Phase::holding, 30)) << loop.describe();
@@ -60,7 +60,7 @@ TEST(FailureDomain, OneDeadDimmerIsOneAlarmAndSendsNoOtherLampAnywhere) {
   EXPECT_LE(loop.worst_limit_share(), 1) << loop.describe();
 }
 
-TEST(FailureDomain, TheRestFadesOnToAPlanWhileABusIsDead) {
+TEST(FailureDomain, TheRestFadesToAPlanWhileABusIsDead) {
   ClosedLoop loop(make_hall(33), seeded(33));
   loop.apply();
   ASSERT_TRUE(loop.run_until(Phase::holding, 30));
@@ -74,7 +74,7 @@ TEST(FailureDomain, TheRestFadesOnToAPlanWhileABusIsDead) {
   EXPECT_LE(loop.largest_step, kLargestStep);
 }
 
-TEST(FailureDomain, ALampThatMayHaveGoneToFullCountsSoWhereNoMeterWatchesALimit) {
+TEST(FailureDomain, ALampThatMayBeAtFullCountsAsFullForUnmeteredLimits) {
   Hall hall = make_hall(34);
   const Eigen::VectorXd plan = Eigen::Map<const Eigen::VectorXd>(hall.plan.data(), 12);
   // A place without a meter. The dimmers' lamps give it much light at full, but not all of its planned light.
@@ -108,7 +108,7 @@ TEST(FailureDomain, ALampThatMayHaveGoneToFullCountsSoWhereNoMeterWatchesALimit)
   EXPECT_NEAR(others_lx(), before_lx, 0.05 * before_lx) << "what was dimmed for it comes back with it";
 }
 
-TEST(FailureDomain, ALostMeterConcernsOnlyWhatRestsOnIt) {
+TEST(FailureDomain, ALostMeterAffectsOnlyWhatDependsOnIt) {
   ClosedLoop loop(make_hall(35), seeded(35));
   loop.apply();
   ASSERT_TRUE(loop.run_until(Phase::holding, 30));
@@ -130,7 +130,7 @@ TEST(FailureDomain, ALostMeterConcernsOnlyWhatRestsOnIt) {
   EXPECT_LE(loop.worst_limit_share(), 1);
 }
 
-TEST(FailureDomain, WhateverIsAskedAndWhateverFailsNoLimitIsExceededWhileTheRestGoesOn) {
+TEST(FailureDomain, NoLimitIsExceededUnderRandomRequestsAndFailures) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     ClosedLoop loop(make_hall(seed), seeded(seed));
     std::mt19937_64 random(seed);
@@ -165,7 +165,7 @@ TEST(FailureDomain, WhateverIsAskedAndWhateverFailsNoLimitIsExceededWhileTheRest
   }
 }
 
-TEST(FailureDomain, ARigThatSaysSoGoesToItsSafeLookAsAWhole) {
+TEST(FailureDomain, ARigSoConfiguredGoesToItsSafeLookAsAWhole) {
   Hall hall = make_hall(36);
   hall.rig.safe.scope = SafeScope::all;
   hall.rig.buses[0].safe_level = 0.05;

@@ -69,7 +69,7 @@ bool alarmed(const ClosedLoop& loop, const std::string& device) {
   return false;
 }
 
-TEST_P(Fault, NeverChangesTheLightBySurpriseAndIsMended) {
+TEST_P(Fault, NeverChangesTheLightBySurpriseAndRecovers) {
   const FaultCase& fault = GetParam();
   ClosedLoop loop(all_safe(make_hall(11)), seeded(11));
   loop.apply();
@@ -122,7 +122,7 @@ TEST_P(Fault, FromTheStartNeverDrivesTheLightAboveALimit) {
   }
 }
 
-TEST_P(FaultInAFade, HoldsWhatIsThereAndGoesOnWhenItIsBack) {
+TEST_P(FaultInAFade, HoldsTheCurrentLightAndResumesAfterRecovery) {
   const FaultCase& fault = GetParam();
   ClosedLoop loop(all_safe(make_hall(12)), seeded(12));
   loop.hall.rig.control.fade_s = 6;
@@ -147,7 +147,7 @@ TEST_P(FaultInAFade, HoldsWhatIsThereAndGoesOnWhenItIsBack) {
   EXPECT_LE(slow.worst_limit_share(), 1);
 }
 
-TEST_P(FaultOfAMeter, OnlyStopsTheCorrectionWhenTheRigSaysSo) {
+TEST_P(FaultOfAMeter, OnlyStopsTheCorrectionWhenConfiguredSo) {
   const FaultCase& fault = GetParam();
   Hall hall = make_hall(13);
   hall.rig.safe.on_meter_loss = false;
@@ -169,7 +169,7 @@ TEST_P(FaultOfAMeter, OnlyStopsTheCorrectionWhenTheRigSaysSo) {
   EXPECT_TRUE(loop.status().alarms.empty()) << loop.describe();
 }
 
-TEST(Unseen, LossOfABusThatCannotTellIsSeenByTheMeters) {
+TEST(Unseen, LossOfAOneWayBusIsDetectedByTheMeters) {
   ClosedLoop loop(all_safe(make_hall(20)), seeded(20));
   loop.apply();
   ASSERT_TRUE(loop.run_until(Phase::holding, 30));
@@ -187,7 +187,7 @@ TEST(Unseen, LossOfABusThatCannotTellIsSeenByTheMeters) {
   EXPECT_LE(loop.worst_limit_share(), 1);
 }
 
-TEST(ACoveredMeter, IsNotTakenAtItsWordUntilAPersonAppliesThePlanAgain) {
+TEST(ACoveredMeter, IsNotTrustedUntilAPersonReappliesThePlan) {
   ClosedLoop loop(all_safe(make_hall(21)), seeded(21));
   loop.apply();
   ASSERT_TRUE(loop.run_until(Phase::holding, 30));
@@ -223,7 +223,7 @@ TEST(WhatMustAlwaysHold5, AMeterThatLiesFromTheFirstReadingCannotDriveTheLightUp
   }
 }
 
-TEST(WhatMustAlwaysHold5, EveryMeterSendingNoNumbersIsALossOfMeters) {
+TEST(WhatMustAlwaysHold5, InvalidReadingsOfAllMetersCountAsTheirLoss) {
   for (const double garbage : {std::nan(""), std::numeric_limits<double>::infinity(), -5.0}) {
     ClosedLoop loop(all_safe(make_hall(15)), seeded(15));
     loop.apply();
@@ -242,7 +242,7 @@ TEST(WhatMustAlwaysHold5, EveryMeterSendingNoNumbersIsALossOfMeters) {
 }
 
 // "Loss of a device, a bus, a meter … never changes the light by surprise" (2), everything at once.
-TEST(WhatMustAlwaysHold2, EverythingLostInTheMiddleOfAFadeIsHeldThenSafeThenBack) {
+TEST(WhatMustAlwaysHold2, LosingEverythingDuringAFadeHoldsThenGoesSafeThenRecovers) {
   ClosedLoop loop(all_safe(make_hall(16)), seeded(16));
   loop.run(1);
   loop.apply();
@@ -259,7 +259,7 @@ TEST(WhatMustAlwaysHold2, EverythingLostInTheMiddleOfAFadeIsHeldThenSafeThenBack
   EXPECT_LE(loop.worst_limit_share(), 1);
 }
 
-TEST(WhatMustAlwaysHold2, ADeviceThatComesAndGoesNeverMakesTheLightPump) {
+TEST(WhatMustAlwaysHold2, AFlappingDeviceNeverMakesTheLightPump) {
   ClosedLoop loop(all_safe(make_hall(17)), seeded(17));
   loop.apply();
   ASSERT_TRUE(loop.run_until(Phase::holding, 30));
@@ -274,7 +274,7 @@ TEST(WhatMustAlwaysHold2, ADeviceThatComesAndGoesNeverMakesTheLightPump) {
 
 // "No output, at any instant of a fade, exceeds a fixture's limits, a conservation limit in the model, or a measured
 // conservation limit" (1): one minute of random commands and accidents.
-TEST(WhatMustAlwaysHold1, NoInstantOfAnyFadeExceedsALimitWhateverIsAskedAndWhateverFails) {
+TEST(WhatMustAlwaysHold1, NoInstantOfAnyFadeExceedsALimitUnderRandomFailures) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     Hall hall = make_hall(seed);
     hall.rig.fixtures[6].max_level = 0.3;
@@ -320,7 +320,7 @@ TEST(WhatMustAlwaysHold1, NoInstantOfAnyFadeExceedsALimitWhateverIsAskedAndWhate
   }
 }
 
-TEST(Blackout, InEveryPhaseIsDarkAtTheNextOutputAndLiftingItFadesBack) {
+TEST(Blackout, IsDarkAtTheNextOutputInEveryPhaseAndFadesBack) {
   // Seconds into the show: fade, settling, measuring, correcting, holding. With a fault: frozen, safe fade, safe.
   struct Moment {
     double at_s;
@@ -354,7 +354,7 @@ TEST(Blackout, InEveryPhaseIsDarkAtTheNextOutputAndLiftingItFadesBack) {
   }
 }
 
-TEST(Daylight, ThatAddsToALimitedPointMakesTheShowDimAndSaySo) {
+TEST(Daylight, ThatAddsToALimitedPointMakesTheShowDimAndReportIt) {
   ClosedLoop loop(make_hall(19), seeded(19));
   loop.apply();
   ASSERT_TRUE(loop.run_until(Phase::holding, 30));

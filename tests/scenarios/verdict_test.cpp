@@ -47,7 +47,7 @@ TEST(ShowVerdicts, AreTrueForPointsWithAndWithoutAMeter) {
   EXPECT_GE(covered, goals * 95 / 100);
 }
 
-TEST(ShowVerdicts, ARigWithoutLuxmetersKnowsNoGoalAndMissesNone) {
+TEST(ShowVerdicts, MeetNoGoalWithoutLuxmetersAndLeaveMostUnknown) {
   Hall hall = make_hall(2);
   hall.rig.luxmeters.clear();
   for (Point& point : hall.rig.points) point.max_lx.reset();
@@ -64,7 +64,7 @@ TEST(ShowVerdicts, ARigWithoutLuxmetersKnowsNoGoalAndMissesNone) {
       << status.points[10].reason;
 }
 
-TEST(ShowVerdicts, ARigWithoutGoalsHasNoneToMiss) {
+TEST(ShowVerdicts, AreEmptyWithoutGoals) {
   Hall hall = make_hall(2);
   for (Point& point : hall.rig.points) point.goal_lx.reset();
   ClosedLoop loop(hall, seeded(2));
@@ -74,7 +74,7 @@ TEST(ShowVerdicts, ARigWithoutGoalsHasNoneToMiss) {
   EXPECT_EQ(loop.status().detail.substr(0, 8), "no goals");
 }
 
-TEST(ShowVerdicts, AReadingOverTheLimitThatIsNotBelievedLeavesTheLimitUnknown) {
+TEST(ShowVerdicts, ARejectedReadingOverTheLimitLeavesTheLimitUnknown) {
   ClosedLoop loop(make_hall(3), seeded(3));
   loop.hall.rig.safe.on_meter_loss = false;
   loop.apply();
@@ -92,7 +92,7 @@ TEST(ShowVerdicts, AReadingOverTheLimitThatIsNotBelievedLeavesTheLimitUnknown) {
   EXPECT_EQ(status.limits_kept, 3);
 }
 
-TEST(ShowVerdicts, ALampThatDoesNotAnswerLeavesTheLimitsThatItCouldBreakUnknown) {
+TEST(ShowVerdicts, AnUnresponsiveLampLeavesTheLimitsItCouldBreakUnknown) {
   Hall hall = make_hall(4);
   const std::size_t dead = 9;
   std::size_t near = 6;  // the point without a meter that this lamp lights most
@@ -113,7 +113,7 @@ TEST(ShowVerdicts, ALampThatDoesNotAnswerLeavesTheLimitsThatItCouldBreakUnknown)
       << status.points[near].limit_reason;
 }
 
-TEST(ShowVerdicts, ADimmerThatDiesHoldingShowsTheLevelItHolds) {
+TEST(ShowVerdicts, ADeadDimmerThatHoldsShowsItsHeldLevel) {
   ClosedLoop loop(make_hall(4), seeded(4));
   loop.apply();
   ASSERT_TRUE(loop.run_until(Phase::holding, 30)) << loop.describe();

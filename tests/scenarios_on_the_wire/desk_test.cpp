@@ -87,7 +87,7 @@ struct FollowedRig {
 
 class FollowedDesk : public ::testing::TestWithParam<const char*> {};
 
-TEST_P(FollowedDesk, TheBrighterOfBothReachesTheLampsWithinTheLimit) {
+TEST_P(FollowedDesk, MergesTheBrighterLevelWithinTheLimit) {
   FollowedRig rig(GetParam(), "merge", "at-once");
   rig.run(5);
   EXPECT_NEAR(rig.far.drives()[1], 0.2, 0.003);
@@ -102,7 +102,7 @@ TEST_P(FollowedDesk, TheBrighterOfBothReachesTheLampsWithinTheLimit) {
   EXPECT_NEAR(rig.far.drives()[1], 0.2, 0.003);
 }
 
-TEST_P(FollowedDesk, IsTakenOverFromWithoutAFlashWhenItIsLostAndGetsTheLightBackByFade) {
+TEST_P(FollowedDesk, IsReplacedWithoutAFlashWhenLostAndRegainsTheLightByFade) {
   FollowedRig rig(GetParam(), "takeover", "fade");
   rig.desk_dmx = 204;
   rig.run(6);
@@ -120,7 +120,7 @@ TEST_P(FollowedDesk, IsTakenOverFromWithoutAFlashWhenItIsLostAndGetsTheLightBack
   EXPECT_LE(rig.max_jump, 1.5 * 0.6 * 0.0228 / 2 + 2.0 / 255);
 }
 
-TEST_P(FollowedDesk, IsStoodByForInSilence) {
+TEST_P(FollowedDesk, IsBackedUpInSilence) {
   FollowedRig rig(GetParam(), "standby", "at-once");
   rig.desk_dmx = 204;
   rig.run(3);

@@ -121,7 +121,7 @@ TEST(ModbusLineShow, ReachesItsGoalByItsLuxmeterAndKeepsTheLimit) {
   EXPECT_EQ(line.driver->health(line.now).at(0).errors, 0u);
 }
 
-TEST(ModbusLineShow, HoldsItsLightWhileTheAdapterIsOutAndGoesOnByItself) {
+TEST(ModbusLineShow, HoldsItsLightWhileTheAdapterIsOutAndResumesByItself) {
   LineShow line;
   line.show->apply(line.now, std::vector<double>(4, kGoal_lx / (4 * kModel_lx)));
   line.run(17);

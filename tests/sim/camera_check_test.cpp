@@ -62,7 +62,7 @@ double curve_error(const SampleCurve& curve, const SensorTruth& truth) {
   return std::sqrt(squares / count - sum / count * (sum / count));
 }
 
-TEST(CameraCheck, KnowsALinearSensorItsDarkLevelItsFullWellAndItsNoise) {
+TEST(CameraCheck, MeasuresDarkLevelFullWellAndNoiseOfALinearSensor) {
   SensorTruth truth;
   truth.dark_share = 0.02;
   const CameraCheck check = judged(truth, SampleCurve::linear(0.02));
@@ -80,7 +80,7 @@ TEST(CameraCheck, KnowsALinearSensorItsDarkLevelItsFullWellAndItsNoise) {
   EXPECT_TRUE(check.findings.empty()) << check.findings.front().what;
 }
 
-TEST(CameraCheck, AsksForTheDarkLevelThatTheRigFileLacks) {
+TEST(CameraCheck, AsksForAMissingDarkLevel) {
   SensorTruth truth;
   truth.dark_share = 0.03;
   const CameraCheck check = judged(truth);
@@ -88,7 +88,7 @@ TEST(CameraCheck, AsksForTheDarkLevelThatTheRigFileLacks) {
   EXPECT_TRUE(says(check, "write dark_level = 0.03"));
 }
 
-TEST(CameraCheck, KnowsEightBitsWithLittleNoise) {
+TEST(CameraCheck, RecognisesALinearEightBitSensor) {
   SensorTruth truth;
   truth.full_scale_counts = 255;
   const CameraCheck check = judged(truth);
@@ -111,7 +111,7 @@ struct Coded {
 
 class CameraWithACurve : public ::testing::TestWithParam<Coded> {};
 
-TEST_P(CameraWithACurve, IsToldAsSuchAndItsCurveRecovered) {
+TEST_P(CameraWithACurve, IsReportedAndItsCurveIsRecovered) {
   const Coded& coded = GetParam();
   for (const double full_well : {20000.0, 2000.0}) {
     SensorTruth truth;
@@ -148,7 +148,7 @@ INSTANTIATE_TEST_SUITE_P(
       return std::string(coded.param.name) + std::to_string(static_cast<int>(10 * coded.param.gamma));
     });
 
-TEST(CameraCheck, TakesTheCurveThatTheRigFileStates) {
+TEST(CameraCheck, AcceptsTheCurveOfTheRigFile) {
   SensorTruth truth;
   truth.full_scale_counts = 255;
   truth.encoding = Encoding::srgb;
@@ -162,7 +162,7 @@ TEST(CameraCheck, TakesTheCurveThatTheRigFileStates) {
   EXPECT_TRUE(says(wrong, "write response = \"linear\""));
 }
 
-TEST(CameraCheck, SeesASensorThatBendsNearFull) {
+TEST(CameraCheck, DetectsASensorThatBendsNearFullScale) {
   SensorTruth truth;
   truth.bend = 0.1;
   const CameraCheck check = judged(truth);
@@ -172,7 +172,7 @@ TEST(CameraCheck, SeesASensorThatBendsNearFull) {
   EXPECT_LT(curve_error(*check.curve, truth), 0.003);
 }
 
-TEST(CameraCheck, SeesWhereSamplesClip) {
+TEST(CameraCheck, DetectsClipping) {
   SensorTruth truth;
   truth.clips_at = 0.8;
   const CameraCheck check = judged(truth);
@@ -188,7 +188,7 @@ TEST(CameraCheck, SeesWhereSamplesClip) {
   EXPECT_TRUE(says(*bright, "full at the shortest exposure"));
 }
 
-TEST(CameraCheck, SeesFlickerAndIsNotFooledByIt) {
+TEST(CameraCheck, DetectsFlickerAndIsNotMisledByIt) {
   SensorTruth truth;
   truth.flicker_depth = 0.2;
   const CameraCheck check = judged(truth);
@@ -198,7 +198,7 @@ TEST(CameraCheck, SeesFlickerAndIsNotFooledByIt) {
   EXPECT_LT(judged(SensorTruth{}).flicker, 0.003);
 }
 
-TEST(CameraCheck, SeesAutomaticExposure) {
+TEST(CameraCheck, DetectsAutomaticExposure) {
   // The camera chooses its exposure so that every picture is equally bright.
   const SensorTruth truth;
   ExposureSeries series = series_of(truth);
@@ -212,7 +212,7 @@ TEST(CameraCheck, SeesAutomaticExposure) {
   EXPECT_TRUE(says(*check, "automatic exposure"));
 }
 
-TEST(CameraCheck, SeesExposuresThatAreNotKept) {
+TEST(CameraCheck, DetectsInaccurateExposures) {
   const SensorTruth truth;
   ExposureSeries series = series_of(truth);
   for (std::size_t f = 0; f < 5; ++f)
@@ -222,7 +222,7 @@ TEST(CameraCheck, SeesExposuresThatAreNotKept) {
   EXPECT_TRUE(says(*check, "does not keep its exposure"));
 }
 
-TEST(CameraCheck, RefusesWhatCannotBeJudged) {
+TEST(CameraCheck, RefusesInvalidSeries) {
   EXPECT_FALSE(check_camera({}, SampleCurve::linear()));
   ExposureSeries series = series_of(SensorTruth{});
   std::swap(series.steps[0], series.steps[1]);

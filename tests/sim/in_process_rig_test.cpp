@@ -38,7 +38,7 @@ struct Bench {
   std::vector<Health> all;
 };
 
-TEST(InProcessRig, WhatIsWrittenShinesAndIsMeasured) {
+TEST(InProcessRig, WrittenLevelsShineAndAreMeasured) {
   Bench bench;
   const LevelCommand commands[] = {{0, 0.5}, {2, 0.25}};
   ASSERT_TRUE(bench.devices.write(at_s(0), commands));
@@ -48,7 +48,7 @@ TEST(InProcessRig, WhatIsWrittenShinesAndIsMeasured) {
   EXPECT_LE(at_s(0.75), reading->taken);
 }
 
-TEST(InProcessRig, TheSameReadingIsGivenOnce) {
+TEST(InProcessRig, GivesEachReadingOnce) {
   Bench bench;
   std::size_t readings = 0;
   for (Time now = at_s(0); now <= at_s(2); now += 10ms) readings += bench.devices.read(now)->size();
@@ -70,7 +70,7 @@ TEST(InProcessRig, WrongInputIsRefusedAndNothingIsSent) {
   EXPECT_EQ(bench.devices.world().drives(), (std::vector<double>{0, 0, 0}));
 }
 
-TEST(InProcessRig, LatencyDelaysOrdersAndReadings) {
+TEST(InProcessRig, LatencyDelaysCommandsAndReadings) {
   InProcessOptions options;
   options.start = at_s(100);
   options.write_latency = 100ms;
@@ -88,7 +88,7 @@ TEST(InProcessRig, LatencyDelaysOrdersAndReadings) {
   EXPECT_EQ(readings->front().taken, at_s(100.2));
 }
 
-TEST(InProcessRig, HeadsMoveWhereTheyAreTold) {
+TEST(InProcessRig, HeadsMoveToTheirAims) {
   Bench bench;
   const AimCommand commands[] = {{1, {kPi / 2, kPi / 4}}};
   ASSERT_TRUE(bench.devices.move(at_s(0), commands));
@@ -98,7 +98,7 @@ TEST(InProcessRig, HeadsMoveWhereTheyAreTold) {
   EXPECT_EQ(bench.devices.world().joints()[1].pan_rad, kPi / 2);
 }
 
-TEST(InProcessRig, ADeadBusIsAFaultAndItsLightHolds) {
+TEST(InProcessRig, ADeadBusIsFaultedAndItsLightHolds) {
   Bench bench;
   const LevelCommand on[] = {{0, 1.0}, {2, 1.0}};
   ASSERT_TRUE(bench.devices.write(at_s(0), on));
@@ -116,7 +116,7 @@ TEST(InProcessRig, ADeadBusIsAFaultAndItsLightHolds) {
   EXPECT_EQ(bench.health_of("field", at_s(2)).life, Life::active);
 }
 
-TEST(InProcessRig, ASilentMeterGoesFaultedWhileTheOtherGoesOnAndComesBack) {
+TEST(InProcessRig, ASilentMeterFaultsAloneAndRecovers) {
   Bench bench;
   bench.last_reading(0, at_s(0), at_s(1));
   bench.devices.faults().set("meter-1", FaultKind::silent, true);
@@ -130,7 +130,7 @@ TEST(InProcessRig, ASilentMeterGoesFaultedWhileTheOtherGoesOnAndComesBack) {
   EXPECT_EQ(bench.health_of("meter-1", at_s(4)).life, Life::active);
 }
 
-TEST(InProcessRig, EveryNamedFaultOfAMeterShowsOrIsALie) {
+TEST(InProcessRig, EveryMeterFaultIsNoticeableOrFalsifiesItsReading) {
   for (const FaultKind kind : all_faults()) {
     if (kind == FaultKind::duplicated || kind == FaultKind::reset || kind == FaultKind::unmappable ||
         kind == FaultKind::bus_off || kind == FaultKind::reordered || kind == FaultKind::lamp_failure ||
@@ -156,7 +156,7 @@ TEST(InProcessRig, EveryNamedFaultOfAMeterShowsOrIsALie) {
   }
 }
 
-TEST(InProcessRig, ALampThatBurnsOutOrHasNoPowerGivesNoLightOnAnyKindOfBus) {
+TEST(InProcessRig, ABurntOutOrUnpoweredLampGivesNoLightOnAnyBus) {
   for (const FaultKind kind : {FaultKind::lamp_failure, FaultKind::unpowered}) {
     for (const std::size_t lamp : {0u, 2u}) {  // on DMX, on Modbus
       Bench bench;
@@ -181,7 +181,7 @@ TEST(InProcessRig, ALampThatBurnsOutOrHasNoPowerGivesNoLightOnAnyKindOfBus) {
   }
 }
 
-TEST(InProcessRig, OrdersOfOneFixtureNeverOvertakeEachOther) {
+TEST(InProcessRig, CommandsOfOneFixtureNeverOvertakeEachOther) {
   Bench bench;
   bench.devices.faults().set("bulb-1", FaultKind::slow, true, 300);
   const LevelCommand first[] = {{2, 0.2}}, second[] = {{2, 0.7}};

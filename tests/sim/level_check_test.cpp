@@ -68,7 +68,7 @@ bool told(const LevelCheck& check, const char* text) {
   return false;
 }
 
-TEST(LevelCheck, KnowsALinearCameraAtALinearDimmer) {
+TEST(LevelCheck, RecognisesALinearCameraWithALinearDimmer) {
   LitScene lit;
   lit.sensor.dark_share = 0.02;
   lit.configured = SampleCurve::linear(0.02);
@@ -81,7 +81,7 @@ TEST(LevelCheck, KnowsALinearCameraAtALinearDimmer) {
   EXPECT_TRUE(check.findings.empty()) << check.findings.front().what;
 }
 
-TEST(LevelCheck, TellsTheDimmersCurveFromALinearCamera) {
+TEST(LevelCheck, SeparatesTheDimmersCurveFromALinearCamera) {
   for (const double exponent : {0.93, 1.08, 2.0}) {
     LitScene lit;
     lit.dimmer_exponent = exponent;
@@ -96,7 +96,7 @@ TEST(LevelCheck, TellsTheDimmersCurveFromALinearCamera) {
   }
 }
 
-TEST(LevelCheck, TellsACurvedCameraWhateverTheDimmerDoes) {
+TEST(LevelCheck, RecognisesACurvedCameraForAnyDimmer) {
   for (const double exponent : {1.0, 0.9, 2.0}) {
     LitScene srgb;
     srgb.sensor.encoding = Encoding::bt709;
@@ -112,7 +112,7 @@ TEST(LevelCheck, TellsACurvedCameraWhateverTheDimmerDoes) {
   }
 }
 
-TEST(LevelCheck, CannotTellAPowerOfTheCameraFromOneOfTheDimmerAndSaysSo) {
+TEST(LevelCheck, ReportsThatCameraAndDimmerPowersAreIndistinguishable) {
   LitScene camera;
   camera.sensor.encoding = Encoding::power;
   camera.sensor.gamma = 2;  // samples are the square root of light
@@ -128,7 +128,7 @@ TEST(LevelCheck, CannotTellAPowerOfTheCameraFromOneOfTheDimmerAndSaysSo) {
   }
 }
 
-TEST(LevelCheck, IsNotMisledByLightThatIsThereAnyway) {
+TEST(LevelCheck, IsNotMisledByAmbientLight) {
   LitScene lit;
   lit.other_light = 0.3;
   lit.sensor.full_well_electrons = 40000;
@@ -139,7 +139,7 @@ TEST(LevelCheck, IsNotMisledByLightThatIsThereAnyway) {
   EXPECT_NEAR(check.other_light, 0.3 / 1.3, 0.03);
 }
 
-TEST(LevelCheck, SaysWhenTheSceneCannotTell) {
+TEST(LevelCheck, ReportsAnUnsuitableScene) {
   LitScene flat;
   flat.decades = 0.1;
   const LevelCheck check = judged_by_levels(flat);
@@ -149,7 +149,7 @@ TEST(LevelCheck, SaysWhenTheSceneCannotTell) {
   EXPECT_NEAR(check.exponent, 1, 0.003);
 }
 
-TEST(LevelCheck, RefusesSeriesThatSayNothing) {
+TEST(LevelCheck, RefusesUninformativeSeries) {
   LevelSeries series = series_by_levels({});
   LevelSeries undark = series;
   undark.dark.frames.clear();

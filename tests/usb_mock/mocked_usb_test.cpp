@@ -108,7 +108,7 @@ TEST(MockedUsb, UdmxIsFoundLitUnpluggedAndFoundAgain) {
   plug_and_replug(desk);
 }
 
-TEST(MockedUsb, ADeviceOfTheSharedIdThatIsNoUdmxIsLeftAlone) {
+TEST(MockedUsb, AnotherDeviceOfTheSharedIdIsLeftAlone) {
   sim::UdmxWidget other("www.fischl.de", "USBasp");
   Desk desk(other, "udmx");
   desk.mock.plug();
@@ -130,7 +130,7 @@ TEST(MockedUsb, AnotherSerialNumberOrPortIsLeftAlone) {
   }
 }
 
-TEST(MockedUsb, OpenDmxPacketsAreWholeBehindTheirBreaks) {
+TEST(MockedUsb, OpenDmxPacketsAreWholeAfterTheirBreaks) {
   sim::DmxLine line;
   sim::FtdiChip chip(line, "FT232R USB UART", "A1", true);
   Desk desk(chip, "open_dmx", {{"rate_hz", std::int64_t{40}}});
@@ -189,7 +189,7 @@ TEST(MockedUsb, AStallIsCountedAndAHangCancelled) {
   EXPECT_GT(cancelled(desk), before);
 }
 
-TEST(MockedUsb, RefusalsThatHoldTheLightAreSaidAndPass) {
+TEST(MockedUsb, RefusalsThatDelayTheLightAreReportedAndPass) {
   sim::UdmxWidget widget;
   Desk desk(widget, "udmx");
   desk.mock.plug();
@@ -205,7 +205,7 @@ TEST(MockedUsb, RefusalsThatHoldTheLightAreSaidAndPass) {
   desk.mock.with([](const UsbfsMock::State& state) { EXPECT_EQ(state.claims, 1); });
 }
 
-TEST(MockedUsb, TakesTheInterfaceFromTheKernelsDriverAndGivesItBack) {
+TEST(MockedUsb, ClaimsTheInterfaceFromTheKernelDriverAndReturnsIt) {
   sim::EnttecWidget widget;
   sim::FtdiChip chip(widget, "DMX USB PRO", "EN012345", false);
   Desk desk(chip, "enttec_pro");
@@ -225,7 +225,7 @@ TEST(MockedUsb, TakesTheInterfaceFromTheKernelsDriverAndGivesItBack) {
   });
 }
 
-TEST(MockedUsb, AProgramThatHasClaimedItIsNotDisturbedButNamed) {
+TEST(MockedUsb, AProgramThatClaimedTheDeviceIsNamedAndLeftAlone) {
   sim::EnttecWidget widget;
   sim::FtdiChip chip(widget, "DMX USB PRO", "EN012345", false);
   Desk desk(chip, "enttec_pro");

@@ -12,7 +12,7 @@ namespace {
 
 using namespace gain_estimator_fixture;
 
-TEST(GainEstimator, BringsMeteredGoalsWithinTwoPercentInThreeRoundsAndNeverExceedsALimit) {
+TEST(GainEstimator, MeetsMeteredGoalsWithinTwoPercentInThreeRoundsWithinLimits) {
   constexpr unsigned kRigs = 500;
   int met = 0, met_or_said = 0, over_metered = 0, over = 0, rejected = 0;
   double most = 0;

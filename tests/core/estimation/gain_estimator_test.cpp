@@ -18,7 +18,7 @@ using namespace gain_estimator_fixture;
 
 const double kNan = std::numeric_limits<double>::quiet_NaN();
 
-TEST(GainEstimator, DoesTheSameWithDaylightThatIsNotQuiteWhatTheModelSays) {
+TEST(GainEstimator, MeetsGoalsWithinLimitsUnderDaylightThatDiffersFromTheModel) {
   constexpr unsigned kRigs = 200;
   int met_or_said = 0, over = 0, rejected = 0;
   double most = 0;
@@ -37,7 +37,7 @@ TEST(GainEstimator, DoesTheSameWithDaylightThatIsNotQuiteWhatTheModelSays) {
   EXPECT_EQ(over, 0);
 }
 
-TEST(GainEstimator, CountsDaylightInWhatItPredictsAndLeavesLessOfALimit) {
+TEST(GainEstimator, CountsDaylightInPredictionsAndAgainstLimits) {
   Rig rig;
   rig.fixtures.resize(1);
   rig.luxmeters.resize(1);
@@ -67,7 +67,7 @@ TEST(GainEstimator, CountsDaylightInWhatItPredictsAndLeavesLessOfALimit) {
   EXPECT_TRUE(estimator.confirmed(0));
 }
 
-TEST(GainEstimator, WhereDaylightIsAboveALimitNoFixtureAddsToIt) {
+TEST(GainEstimator, AddsNoLightWhereDaylightExceedsALimit) {
   Rig rig;
   rig.fixtures.resize(2);
   rig.points.resize(2);
@@ -85,7 +85,7 @@ TEST(GainEstimator, WhereDaylightIsAboveALimitNoFixtureAddsToIt) {
   EXPECT_NEAR(correction.level[1], 0.8, 0.05);
 }
 
-TEST(GainEstimator, CannotBeDrivenOverALimitByMetersThatAreDeadStuckOrWrong) {
+TEST(GainEstimator, KeepsLimitsWithDeadStuckOrWrongMeters) {
   const struct {
     const char* name;
     std::function<double(double truth, double first)> says;
@@ -125,7 +125,7 @@ TEST(GainEstimator, LearnsNothingFromARejectedReading) {
   EXPECT_FALSE(estimator.confirmed(0));
 }
 
-TEST(GainEstimator, CallsAMeterStuckThatKeepsItsValueWhileTheLightCreeps) {
+TEST(GainEstimator, RecognisesAStuckMeterWhileTheLightCreeps) {
   World world(2);
   GainEstimator estimator(world.rig, world.model);
   std::vector<double> level = world.plan;
@@ -143,7 +143,7 @@ TEST(GainEstimator, CallsAMeterStuckThatKeepsItsValueWhileTheLightCreeps) {
 }
 
 // Its lessons from before it froze stay. The value it froze at during a fade teaches nothing, however near it is.
-TEST(GainEstimator, DoesNotBelieveAMeterThatFreezesInTheMiddleOfAFade) {
+TEST(GainEstimator, LearnsNothingFromAMeterThatFreezesDuringAFade) {
   World world(3);
   GainEstimator estimator(world.rig, world.model);
   const auto at = [&](double share) {
@@ -181,7 +181,7 @@ TEST(GainEstimator, DoesNotBelieveAMeterThatFreezesInTheMiddleOfAFade) {
   EXPECT_TRUE(estimator.confirmed(0));
 }
 
-TEST(GainEstimator, FindsTheOutputOfASingleLampAndSaysHowSureItIs) {
+TEST(GainEstimator, FindsTheOutputOfASingleLampAndItsUncertainty) {
   Rig rig;
   rig.fixtures.resize(1);
   rig.luxmeters.resize(1);
@@ -246,7 +246,7 @@ TEST(GainEstimator, PredictsReadingsWithinItsStatedError) {
   EXPECT_GT(within, 0.9 * all) << within << " of " << all;
 }
 
-TEST(GainEstimator, DoesNotCareInWhichOrderReadingsCome) {
+TEST(GainEstimator, DoesNotDependOnTheOrderOfReadings) {
   World world(5);
   GainEstimator one(world.rig, world.model), other(world.rig, world.model);
   auto readings = world.readings(world.plan, at_s(1));
@@ -256,7 +256,7 @@ TEST(GainEstimator, DoesNotCareInWhichOrderReadingsCome) {
   for (std::size_t j = 0; j < world.plan.size(); ++j) EXPECT_NEAR(one.gain(j), other.gain(j), 1e-12);
 }
 
-TEST(GainEstimator, ForgetsWhatAMeterTaught) {
+TEST(GainEstimator, ForgetsTheLessonsOfAMeter) {
   World world(5);
   GainEstimator estimator(world.rig, world.model);
   estimator.update(at_s(1), world.readings(world.plan, at_s(1)), world.plan);
@@ -266,7 +266,7 @@ TEST(GainEstimator, ForgetsWhatAMeterTaught) {
   EXPECT_EQ(estimator.gain(3), 1);
 }
 
-TEST(GainEstimator, BoundsLightAtOnceAboveTheTruthAndNearItWhereItWasMeasured) {
+TEST(GainEstimator, BoundsLightFromAboveAndTightlyWhereMeasured) {
   for (unsigned seed = 0; seed < 50; ++seed) {
     World world(seed);
     GainEstimator estimator(world.rig, world.model);
@@ -324,7 +324,7 @@ TEST(GainEstimator, CorrectsTheEmittersOfAHousingTogether) {
   EXPECT_GT(dark.level[3], 0.3);
 }
 
-TEST(GainEstimator, CorrectsWithinALimitOfPower) {
+TEST(GainEstimator, CorrectsWithinAPowerLimit) {
   Rig rig;
   rig.luminaires.resize(1);
   rig.luminaires[0].watts = 20;

@@ -21,7 +21,7 @@ TEST(MeterSamples, GivesTheMedianOfTheLastFour) {
   EXPECT_EQ(samples.sample(0)->taken, at(5));
 }
 
-TEST(MeterSamples, GivesAStuckValueBackToTheLastBit) {
+TEST(MeterSamples, ReturnsAStuckValueBitForBit) {
   for (int count = 2; count <= 4; ++count) {
     MeterSamples samples(1);
     for (int i = 1; i <= count; ++i) samples.add(at(i), reading(0.1, i));
@@ -29,7 +29,7 @@ TEST(MeterSamples, GivesAStuckValueBackToTheLastBit) {
   }
 }
 
-TEST(MeterSamples, CountsOnlyReadingsTakenSinceTheLightStandsStill) {
+TEST(MeterSamples, CountsOnlyReadingsTakenSinceTheLightSettled) {
   MeterSamples samples(1);
   samples.restart(at(10));
   for (int i = 1; i < 10; ++i) samples.add(at(i), reading(7, i));
@@ -43,7 +43,7 @@ TEST(MeterSamples, CountsOnlyReadingsTakenSinceTheLightStandsStill) {
   EXPECT_FALSE(samples.sample(0));
 }
 
-TEST(MeterSamples, WaitsLongerForReadingsThatStillGoOneWay) {
+TEST(MeterSamples, WaitsLongerWhileReadingsStillDrift) {
   MeterSamples samples(1);
   const auto settling_lx = [](double at_s) { return 5 + 95 * std::exp(-at_s); };  // a lamp with a time constant of 1 s
   double ready_s = 0;
@@ -58,7 +58,7 @@ TEST(MeterSamples, WaitsLongerForReadingsThatStillGoOneWay) {
   EXPECT_TRUE(samples.ready(at(36), 0)) << "nothing settles for so long: it is the light that changes";
 }
 
-TEST(MeterSamples, WaitsForReadingsThatAgreeButNotForEver) {
+TEST(MeterSamples, WaitsForAgreeingReadingsButNotForever) {
   MeterSamples samples(1);
   for (int i = 1; i <= 4; ++i) samples.add(at(i), reading(i % 2 ? 100 : 102, i));
   EXPECT_TRUE(samples.ready(at(4), 0));
@@ -70,14 +70,14 @@ TEST(MeterSamples, WaitsForReadingsThatAgreeButNotForEver) {
   EXPECT_TRUE(samples.ready(at(10), 0));
 }
 
-TEST(MeterSamples, TakesDarknessAsAReading) {
+TEST(MeterSamples, AcceptsDarknessAsAReading) {
   MeterSamples samples(1);
   for (int i = 1; i <= 4; ++i) ASSERT_TRUE(samples.add(at(i), reading(0, i)));
   EXPECT_TRUE(samples.ready(at(4), 0));
   EXPECT_EQ(samples.sample(0)->lux, 0);
 }
 
-TEST(MeterSamples, RefusesWhatIsNoReading) {
+TEST(MeterSamples, RefusesInvalidReadings) {
   MeterSamples samples(1);
   ASSERT_TRUE(samples.add(at(1), reading(5, 1)));
   EXPECT_FALSE(samples.add(at(9), reading(std::nan(""), 2)));

@@ -21,7 +21,7 @@ double way_at(double t, double way, const AxisLimits& limits) {
   return peak * (t - ramp_s / 2);
 }
 
-TEST(Trapezoid, IsTheClosedForm) {
+TEST(Trapezoid, MatchesTheClosedForm) {
   EXPECT_DOUBLE_EQ(trapezoid_s(100, 50, 25), 4);  // 2 s up and 2 s down, no time at full speed
   EXPECT_DOUBLE_EQ(trapezoid_s(200, 50, 25), 6);  // two more at full speed
   EXPECT_DOUBLE_EQ(trapezoid_s(25, 50, 25), 2);   // reaches half of the speed
@@ -64,7 +64,7 @@ TEST(HeadMove, BothAxesArriveTogetherOnAStraightLineWithinTheirLimits) {
   }
 }
 
-TEST(HeadMove, AHeadThatStaysTakesNoTime) {
+TEST(HeadMove, AnAxisThatStaysTakesNoTime) {
   const HeadMove move = head_move(0, 0, {10, 10}, {10, 10});
   EXPECT_EQ(move.seconds, 0);
   EXPECT_EQ(move.pan.speed, 0);

@@ -51,7 +51,7 @@ Eigen::AlignedBox3d some_box(Random& random) {
   return {middle - half, middle + half};
 }
 
-TEST(KeepOut, TheAngleToABoxIsThatToItsNearestPoint) {
+TEST(KeepOut, AngleToABoxIsThatToItsNearestPoint) {
   Random random(3);
   int met = 0, inside = 0, behind = 0;
   for (int i = 0; i < 1500; ++i) {
@@ -74,7 +74,7 @@ TEST(KeepOut, TheAngleToABoxIsThatToItsNearestPoint) {
   EXPECT_GT(behind, 50);
 }
 
-TEST(KeepOut, TheAngleToABallIsToItsOutline) {
+TEST(KeepOut, AngleToABallIsThatToItsOutline) {
   // A ball of 1 m radius seen from 2 m away is 30° to each side.
   EXPECT_NEAR(angle_to_ball_rad({0, 0, 0}, Vec3::UnitY(), {2, 0, 0}, 1), rad_from_deg(60), 1e-12);
   EXPECT_NEAR(angle_to_ball_rad({0, 0, 0}, -Vec3::UnitX(), {2, 0, 0}, 1), rad_from_deg(150), 1e-12);
@@ -109,7 +109,7 @@ KeepOut ball(const Vec3& centre_m, double radius_m, double margin_deg = 0) {
   return zone;
 }
 
-TEST(KeepOut, TheBeamCountsToItsFieldAngleItsZoomAndTheMargin) {
+TEST(KeepOut, ABeamReachesToItsFieldAngleZoomAndMargin) {
   // Nearly a point, straight below.
   const KeepOutZones zones(rig_with(ball({0, 0, 0}, 1e-9, 3)));
   const auto at = [](double tilt_deg, double beam_deg) {
@@ -125,7 +125,7 @@ TEST(KeepOut, TheBeamCountsToItsFieldAngleItsZoomAndTheMargin) {
   EXPECT_EQ(zones.heads().size(), 1u);
 }
 
-TEST(KeepOut, AMeasuredDistributionCountsToATenthOfItsPeakFromItsAxis) {
+TEST(KeepOut, AMeasuredBeamReachesToATenthOfItsPeak) {
   Luminaire luminaire;
   luminaire.model = LuminaireModel::ies;
   luminaire.intensity = make_spot(500, rad_from_deg(20), rad_from_deg(37));
@@ -137,7 +137,7 @@ TEST(KeepOut, AMeasuredDistributionCountsToATenthOfItsPeakFromItsAxis) {
   EXPECT_GE(field_half_angle_rad(luminaire, 0), std::acos(0.1));
 }
 
-TEST(KeepOut, WhatShinesAllRoundMeetsEveryZone) {
+TEST(KeepOut, AnIsotropicLampMeetsEveryZone) {
   Rig rig = rig_with(ball({0, 0, 50}, 0.1));
   rig.luminaires[0].model = LuminaireModel::isotropic;
   rig.luminaires[0].intensity = make_isotropic(500);
@@ -145,7 +145,7 @@ TEST(KeepOut, WhatShinesAllRoundMeetsEveryZone) {
 }
 
 /// Ranges of postures: no sampled posture in the zone is missed, and false alarms are near the zone.
-TEST(KeepOut, NoPostureOfARangeIsMissed) {
+TEST(KeepOut, MissesNoPostureOfARange) {
   Random random(5);
   int clear = 0, met = 0, near = 0;
   for (int i = 0; i < 400; ++i) {
@@ -180,7 +180,7 @@ TEST(KeepOut, NoPostureOfARangeIsMissed) {
   EXPECT_LT(near, 40);
 }
 
-TEST(KeepOut, NoPostureOnStraightJointLinesIsMissed) {
+TEST(KeepOut, MissesNoPostureOnStraightJointLines) {
   Random random(6);
   int clear = 0, met = 0, spared = 0;
   for (int i = 0; i < 400; ++i) {

@@ -78,7 +78,7 @@ TEST(FadeShare, RisesFromZeroToOneAndIsExactAtTheEnds) {
   EXPECT_DOUBLE_EQ(fade_share(FadeCurve::s_curve, 0.25), 3 * 0.0625 - 2 * 0.015625);
 }
 
-TEST(DimmerCurve, RisesAndItsInverseGivesTheLevelBack) {
+TEST(DimmerCurve, RisesAndItsInverseReturnsTheLevel) {
   for (const DimmerCurve curve : {DimmerCurve::linear, DimmerCurve::square, DimmerCurve::s_curve}) {
     for (const double end : {0.0, 1.0}) {
       EXPECT_EQ(level_from_drive(curve, end), end);
@@ -145,7 +145,7 @@ TEST(OutputProgram, GivesBothEndsExactlyWhenNoLimitBinds) {
   }
 }
 
-TEST(OutputProgram, MovesEachLevelOneWayOnly) {
+TEST(OutputProgram, MovesEachLevelInOneDirectionOnly) {
   std::mt19937_64 random(4);
   for (int i = 0; i < 200; ++i) {
     OutputProgram program = random_program(random);
@@ -166,7 +166,7 @@ TEST(OutputProgram, MovesEachLevelOneWayOnly) {
   }
 }
 
-TEST(OutputProgram, DimsForALimitWhatLightsThatPointAndHardlyWhatOnlyStraysThere) {
+TEST(OutputProgram, DimsForALimitMostlyTheLampsThatLightThePoint) {
   OutputProgram program;
   program.from_level = program.to_level = {0.8, 0.8, 0.6};
   program.max_level = {1, 1, 1};
@@ -179,7 +179,7 @@ TEST(OutputProgram, DimsForALimitWhatLightsThatPointAndHardlyWhatOnlyStraysThere
   EXPECT_EQ(level[2], 0.6);
 }
 
-TEST(OutputProgram, DimsForALimitTheLampThatGoalsElsewhereNeedLess) {
+TEST(OutputProgram, DimsForALimitTheLampsThatOtherGoalsNeedLess) {
   OutputProgram program;
   program.from_level = program.to_level = {0.5, 0.5};
   program.max_level = {1, 1};
@@ -191,7 +191,7 @@ TEST(OutputProgram, DimsForALimitTheLampThatGoalsElsewhereNeedLess) {
   EXPECT_NEAR((0.5 - level[1]) / (0.5 - level[0]), 1.0 / 20, 1e-9);
 }
 
-TEST(OutputProgram, DimsTheEmittersOfAHousingAlikeSoThatItsColourStays) {
+TEST(OutputProgram, DimsTheEmittersOfAHousingAlikeToKeepItsColour) {
   OutputProgram program;
   program.from_level = program.to_level = {0.8, 0.2, 0.5};
   program.max_level = {1, 1, 1};
@@ -204,7 +204,7 @@ TEST(OutputProgram, DimsTheEmittersOfAHousingAlikeSoThatItsColourStays) {
   EXPECT_LT(level[0] / 0.8, level[2] / 0.5);
 }
 
-TEST(OutputProgram, PutsOutEveryLampAtAPointThatMayHaveNoLight) {
+TEST(OutputProgram, PutsOutEveryLampThatReachesAPointWithAZeroLimit) {
   OutputProgram program;
   program.from_level = program.to_level = {0.8, 0.4, 0.6};
   program.max_level = {1, 1, 1};
@@ -213,7 +213,7 @@ TEST(OutputProgram, PutsOutEveryLampAtAPointThatMayHaveNoLight) {
   EXPECT_EQ(levels(program, at(1)), (std::vector<double>{0, 0, 0.6}));
 }
 
-TEST(OutputProgram, DimsAlikeWhatGivesAlikeAndLeavesTheOthersAlone) {
+TEST(OutputProgram, DimsEqualContributorsAlikeAndLeavesTheOthersAlone) {
   OutputProgram program;
   program.from_level = program.to_level = {0.8, 0.4, 0.6};
   program.max_level = {1, 1, 1};
@@ -236,7 +236,7 @@ TEST(OutputProgram, IsDarkAtOnceInABlackout) {
   }
 }
 
-TEST(OutputProgram, GivesDarkNeverNaNForDegenerateInput) {
+TEST(OutputProgram, GivesDarknessNeverNaNForDegenerateInput) {
   const double nan = std::nan("");
   OutputProgram program;
   program.from_level = {nan, 1, -1, 1, kInfinity, 1};

@@ -7,7 +7,7 @@
 namespace luxrig {
 namespace {
 
-TEST(ArcTangent, IsTheLibrarysToRounding) {
+TEST(ArcTangent, MatchesTheLibraryToRounding) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> unit(-1, 1);
   std::uniform_real_distribution<double> decade(-12, 12);

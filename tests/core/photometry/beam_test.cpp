@@ -11,7 +11,7 @@
 namespace luxrig {
 namespace {
 
-TEST(Beam, OfASpotIsWhatItWasMadeWith) {
+TEST(Beam, OfASpotHasTheAnglesItWasMadeWith) {
   for (const auto& [beam_deg, field_deg] : {std::pair{1.0, 2.0}, {24.0, 40.0}, {35.9, 36.0}, {60.0, 178.0}}) {
     const Intensity spot = make_spot(1000, rad_from_deg(beam_deg), rad_from_deg(field_deg));
     EXPECT_NEAR(deg_from_rad(beam_angles(*spot).c0_rad), beam_deg, 1e-6);
@@ -20,7 +20,7 @@ TEST(Beam, OfASpotIsWhatItWasMadeWith) {
   }
 }
 
-TEST(Beam, OfCosinePowersAndIsotropicLightHasAClosedForm) {
+TEST(Beam, HasClosedFormsForCosinePowersAndIsotropicLight) {
   for (const double n : {1.0, 2.0, 30.0}) {
     const Intensity light = make_cosine_power(100, n);
     EXPECT_NEAR(beam_angles(*light).c0_rad, 2 * std::acos(std::pow(0.5, 1 / n)), 1e-8);

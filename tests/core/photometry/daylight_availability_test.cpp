@@ -9,7 +9,7 @@
 namespace luxrig {
 namespace {
 
-TEST(DaylightAvailability, IsNothingFromTheHorizonDown) {
+TEST(DaylightAvailability, IsZeroFromTheHorizonDown) {
   for (const CloudCover cover : {CloudCover::clear, CloudCover::partly, CloudCover::overcast})
     for (const double altitude_rad : {0.0, -1e-9, -0.3, -kPi / 2}) {
       EXPECT_EQ(daylight_availability(cover, altitude_rad).sky_horizontal_lx, 0);
@@ -26,7 +26,7 @@ TEST(DaylightAvailability, HasTheFiguresOfTheRecommendedPractice) {
   EXPECT_EQ(daylight_availability(CloudCover::overcast, kPi / 6).sun_normal_lx, 0);
 }
 
-TEST(DaylightAvailability, GrowsWithTheSunsHeightAndNeverPassesTheSunAboveTheAir) {
+TEST(DaylightAvailability, GrowsWithTheSunsHeightAndStaysBelowTheExtraterrestrialSun) {
   for (const CloudCover cover : {CloudCover::clear, CloudCover::partly, CloudCover::overcast}) {
     DaylightAvailability before;
     for (int step = 1; step <= 90; ++step) {

@@ -79,7 +79,7 @@ EulumdatFile parsed_eulumdat(const std::string& text) {
 
 const std::vector<double> kEight{0, 45, 90, 135, 180, 225, 270, 315};
 
-TEST(Eulumdat, TakesItsFieldsInUnitsOfOurs) {
+TEST(Eulumdat, ConvertsItsFieldsToOurUnits) {
   Text text(1, {0}, {0, 90}, {100, 50});
   text.lines[21] = "87.5";
   text.lines[13] = "250";
@@ -100,7 +100,7 @@ TEST(Eulumdat, TakesItsFieldsInUnitsOfOurs) {
   EXPECT_NEAR(make_intensity(file)->intensity_cd(direction(45, 77)), 75, 1e-9);
 }
 
-TEST(Eulumdat, ScalesByTheLampSetThatIsChosen) {
+TEST(Eulumdat, ScalesByTheChosenLampSet) {
   Text text(1, {0}, {0, 90}, {100, 100});
   text.lines[25] = "2";
   text.lines.insert(text.lines.begin() + 32, {"-2", "LED", "1500", "4000 K", "90", "20"});
@@ -152,7 +152,7 @@ TEST(EulumdatSymmetry, Both) {
   EXPECT_NEAR(light->intensity_cd(direction(90, 270)), 30, 1e-9);
 }
 
-TEST(EulumdatSymmetry, OnePlaneIsRoundWhateverTheFieldSays) {
+TEST(EulumdatSymmetry, OnePlaneIsRoundForAnySymmetryField) {
   for (int symmetry = 0; symmetry <= 4; ++symmetry) {
     const Intensity light = make_intensity(parsed_eulumdat(Text(symmetry, {0}, {0, 90}, {10, 20}).joined()));
     EXPECT_NEAR(light->flux_lm(), make_intensity(parsed_eulumdat(Text(1, {0}, {0, 90}, {10, 20}).joined()))->flux_lm(),
@@ -160,7 +160,7 @@ TEST(EulumdatSymmetry, OnePlaneIsRoundWhateverTheFieldSays) {
   }
 }
 
-TEST(Eulumdat, ToleratesTheFormsThatRealFilesHave) {
+TEST(Eulumdat, ToleratesTheQuirksOfRealFiles) {
   const Text plain(1, {0}, {0, 90}, {100.5, 100.5});
   const double flux_lm = make_intensity(parsed_eulumdat(plain.joined()))->flux_lm();
   Text odd = plain;
@@ -212,7 +212,7 @@ struct BadLine {
   const char* what;
 };
 
-TEST(Eulumdat, SaysWhereAndWhatIsWrong) {
+TEST(Eulumdat, ReportsWhereAndWhatIsWrong) {
   const BadLine bad[] = {
       {3, "5", "symmetry (field 3) '5' is out of range"},
       {3, "x", "symmetry (field 3) 'x' is not a number"},
@@ -264,7 +264,7 @@ TEST(Eulumdat, ReadsUtf16) {
   EXPECT_EQ(file->cd_per_klm, (std::vector<double>{200, 0}));
 }
 
-TEST(Eulumdat, SaysWhatStandsAfterItsEnd) {
+TEST(Eulumdat, WarnsOfValuesAfterItsEnd) {
   const std::string whole = Text(1, {0}, {0, 90}, {1000 / kPi, 0}).joined();
   const auto said = [&](const std::string& after) {
     const auto file = parse_eulumdat(whole + after, "f");
@@ -274,7 +274,7 @@ TEST(Eulumdat, SaysWhatStandsAfterItsEnd) {
   EXPECT_NE(said("\r\n12\r\n13\r\n").find("2 values after the last intensity are not read: '12'"), std::string::npos);
 }
 
-TEST(Eulumdat, NamesTheFirstFieldThatACutFileLacks) {
+TEST(Eulumdat, NamesTheFirstMissingFieldOfATruncatedFile) {
   const Text whole(2, kEight, {0, 45, 90}, std::vector<double>(15, 7.0));
   for (std::size_t kept = 0; kept < whole.lines.size(); ++kept) {
     Text cut = whole;

@@ -58,7 +58,7 @@ struct RealFile {
 };
 class RealFiles : public testing::TestWithParam<RealFile> {};
 
-TEST_P(RealFiles, LoadWithTheFluxTheirCatalogueStates) {
+TEST_P(RealFiles, LoadWithTheirCatalogueFlux) {
   const RealFile& expected = GetParam();
   const auto file = load_ies(data_file(expected.name));
   ASSERT_TRUE(file.has_value()) << file.error().front().text();
@@ -69,7 +69,7 @@ TEST_P(RealFiles, LoadWithTheFluxTheirCatalogueStates) {
   EXPECT_NEAR(make_intensity(*file)->flux_lm() / expected.flux_lm, 1, 0.01);
 }
 
-TEST_P(RealFiles, HaveTheFluxThatTheirInterpolatedIntensityIntegratesTo) {
+TEST_P(RealFiles, HaveTheFluxOfTheirInterpolatedIntensity) {
   const auto file = load_ies(data_file(GetParam().name));
   ASSERT_TRUE(file.has_value());
   const Intensity light = make_intensity(*file);
@@ -155,7 +155,7 @@ TEST(Ies, ConvertsFeetAndKeepsTheSignsOfTheOpening) {
   EXPECT_DOUBLE_EQ(file->input_w, 25);
 }
 
-TEST(Ies, ToleratesTheFormsThatRealFilesHave) {
+TEST(Ies, ToleratesTheQuirksOfRealFiles) {
   const std::string texts[] = {
       "\xEF\xBB\xBFIESNA91\r\nTILT = NONE\r\n1 -1 1 2 1 1 2 0 0 0\r\n1 1 5\r\n0 90\r\n0\r\n100 100\r\n\x1a",
       "tilt=none 1,-1,1.,2,1,1,2,0,0,.0,1,1,5,0,90,0,1e2,100",
@@ -167,7 +167,7 @@ TEST(Ies, ToleratesTheFormsThatRealFilesHave) {
   }
 }
 
-TEST(Ies, AppliesTheTiltFactorOfAnUprightLampAndSaysSo) {
+TEST(Ies, AppliesTheTiltFactorOfAnUprightLampAndReportsIt) {
   const auto file = parse_ies(
       "IESNA:LM-63-2002\nTILT=INCLUDE\n1\n3\n0 45 90\n0.9 0.8 0.7\n1 -1 1 2 1 1 2 0 0 0\n1 1 5\n0 90\n0\n100 100\n",
       "f");
@@ -177,7 +177,7 @@ TEST(Ies, AppliesTheTiltFactorOfAnUprightLampAndSaysSo) {
   EXPECT_NE(file->warnings.front().find("tilt"), std::string::npos);
 }
 
-TEST(Ies, WarnsWhenTheDistributionHoldsMoreThanItsLampsGive) {
+TEST(Ies, WarnsWhenTheDistributionExceedsItsLampFlux) {
   const auto text = [](double lumens) {
     return "IES:LM-63-2019\nTILT=NONE\n1 " + std::to_string(lumens) +
            " 1 2 1 1 2 0 0 0\n1 1 25\n0 90\n0\n100 100\n";  // 628.3 lm
@@ -209,14 +209,14 @@ TEST(IesSymmetry, HalfFilesAreMirroredAboutThePlaneTheyEndOn) {
   EXPECT_NEAR(about_90->intensity_cd(direction(90, 225)), 35, 1e-9);
 }
 
-TEST(IesSymmetry, PlanesThatStopOneShortOf360AreClosed) {
+TEST(IesSymmetry, ClosesPlanesThatStopOneShortOf360) {
   const Intensity light = intensity_of(file_text({0, 90}, {0, 120, 240}, {10, 20, 10, 30, 10, 40}));
   EXPECT_NEAR(light->intensity_cd(direction(90, 300)), 30, 1e-9);
   EXPECT_NEAR(light->intensity_cd(direction(90, 360)), 20, 1e-9);
   EXPECT_NEAR(light->intensity_cd(direction(90, -1e-9)), 20, 1e-6);
 }
 
-TEST(IesSymmetry, RefusesRangesThatAreNone) {
+TEST(IesSymmetry, RefusesInvalidRanges) {
   EXPECT_FALSE(parse_ies(file_text({0, 90}, {0, 60, 120}, {1, 1, 1, 1, 1, 1}), "f").has_value());
   EXPECT_FALSE(parse_ies(file_text({0, 90}, {10, 360}, {1, 1, 1, 1}), "f").has_value());
 }
@@ -241,7 +241,7 @@ TEST(IesFlux, IsExactForDistributionsWithAClosedForm) {
   EXPECT_NEAR(intensity_of(file_text({90, 180}, {0, 360}, {50, 50, 50, 50}))->flux_lm(), 100 * kPi, 1e-9);
 }
 
-TEST(IesIntensity, IsZeroOutsideTheVerticalRangeAndWholeOnItsLastAngle) {
+TEST(IesIntensity, IsZeroBeyondTheVerticalRangeAndFullOnItsLastAngle) {
   const Intensity light = intensity_of(file_text({0, 90}, {0}, {100, 80}));
   EXPECT_NEAR(light->intensity_cd(direction(90, 77)), 80, 1e-6);
   EXPECT_EQ(light->intensity_cd(direction(90.001, 77)), 0);
@@ -290,7 +290,7 @@ struct BadText {
   std::string text;
 };
 
-TEST(Ies, SaysWhereAndWhatIsWrong) {
+TEST(Ies, ReportsWhereAndWhatIsWrong) {
   const std::string head = "IESNA:LM-63-2002\nTILT=NONE\n";
   const BadText bad[] = {
       {"no TILT= line", 1, 1, ""},
@@ -336,14 +336,14 @@ TEST(Ies, SaysWhereAndWhatIsWrong) {
   }
 }
 
-TEST(Ies, ReadsNumbersThatCommasSeparate) {
+TEST(Ies, ReadsNumbersSeparatedByCommas) {
   const auto file = parse_ies("IESNA91\nTILT=NONE\n1,-1,1,2,2,1,2,0,0,0\n1,1,1\n0,90\n0, 90\n100,0,100,0\n", "f");
   ASSERT_TRUE(file.has_value()) << file.error().front().text();
   EXPECT_EQ(file->candela, (std::vector<double>{100, 0, 100, 0}));
   EXPECT_TRUE(file->warnings.empty());
 }
 
-TEST(Ies, SaysWhatStandsAfterItsEnd) {
+TEST(Ies, WarnsOfValuesAfterItsEnd) {
   const std::string whole = "IESNA91\nTILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 1\n0 90\n0\n100 0\n";
   for (const char* nothing : {"", "\n \n", "\x1a", ","}) EXPECT_TRUE(parse_ies(whole + nothing, "f")->warnings.empty());
   const auto more = parse_ies(whole + "\n7 8 9\n", "f");
@@ -376,7 +376,7 @@ TEST(Ies, ReportsEveryBadValueUpToALimit) {
   EXPECT_LE(many.error().size(), 20u);
 }
 
-TEST(Ies, RefusesAFileCutAnywhereBeforeItsLastNumber) {
+TEST(Ies, RefusesAFileTruncatedAnywhereBeforeItsLastNumber) {
   std::ifstream in(data_file("comet.ies"), std::ios::binary);
   const std::string text((std::istreambuf_iterator<char>(in)), {});
   ASSERT_FALSE(text.empty());
@@ -387,7 +387,7 @@ TEST(Ies, RefusesAFileCutAnywhereBeforeItsLastNumber) {
   EXPECT_TRUE(parse_ies(text, "f").has_value());
 }
 
-TEST(Ies, RefusesAPathThatIsNoFile) {
+TEST(Ies, RefusesAPathThatIsNotAFile) {
   EXPECT_FALSE(load_ies(data_file("missing.ies")).has_value());
   EXPECT_FALSE(load_ies(data_file("")).has_value());
   EXPECT_FALSE(load_ies("/dev/zero").has_value());

@@ -46,7 +46,7 @@ Vec3 direction_a(double y_deg, double x_deg) {
   return {std::cos(y) * std::sin(x), std::sin(y), -std::cos(y) * std::cos(x)};
 }
 
-TEST(IesTypeB, HasItsBeamAtTheNadirVerticalAnglesTowardsXAndHorizontalOnesClockwise) {
+TEST(IesTypeB, HasItsBeamAtTheNadirWithVerticalTowardsXAndHorizontalClockwise) {
   const std::vector<double> angles{-90, -45, 0, 45, 90};
   std::vector<double> candela(25, 0.0);
   for (std::size_t i = 0; i < 25; ++i) candela[i] = 100.0 + static_cast<double>(i);
@@ -64,7 +64,7 @@ TEST(IesTypeB, HasItsBeamAtTheNadirVerticalAnglesTowardsXAndHorizontalOnesClockw
   }
 }
 
-TEST(IesTypeA, HasItsBeamAlongTheLampsAxisVerticalAnglesTowardsYAndHorizontalOnesTowardsX) {
+TEST(IesTypeA, HasItsBeamOnTheLampAxisWithVerticalAlongYAndHorizontalAlongX) {
   const std::vector<double> vertical{-90, -30, 0, 30, 90};
   const std::vector<double> horizontal{-90, 0, 60, 90};
   std::vector<double> candela(20);
@@ -128,7 +128,7 @@ TEST(IesTypesAAndB, AreRoundAboutTheirBeamWithOneHorizontalAngle) {
   EXPECT_NEAR(a->flux_lm(), b->flux_lm(), 1e-9);
 }
 
-TEST(IesTypesAAndB, KeepToTheAnglesTheyGiveAndSaySo) {
+TEST(IesTypesAAndB, AreDarkBeyondTheirStatedAnglesWithAWarning) {
   const IesFile file = grid_file(2, {-20, 0, 20}, {-10, 0, 10}, {1, 1, 1, 1, 5, 1, 1, 1, 1});
   EXPECT_EQ(file.warnings.size(), 2u);
   const Intensity light = make_intensity(file);
@@ -139,7 +139,7 @@ TEST(IesTypesAAndB, KeepToTheAnglesTheyGiveAndSaySo) {
   EXPECT_NEAR(light->emission_cone_rad(), 2 * corner, 1e-9);
 }
 
-TEST(IesTypesAAndB, DrawDirectionsByTheirIntensity) {
+TEST(IesTypesAAndB, SampleDirectionsByTheirIntensity) {
   std::mt19937_64 random(4);
   std::uniform_real_distribution<double> unit(0, 1);
   for (const int type : {2, 3}) {
@@ -153,7 +153,7 @@ TEST(IesTypesAAndB, DrawDirectionsByTheirIntensity) {
   }
 }
 
-TEST(IesTilt, IsLinearBetweenItsAnglesAndOverTheUprightLamp) {
+TEST(IesTilt, IsLinearBetweenItsAnglesRelativeToTheUprightLamp) {
   const IesFile file = parsed(
       "IESNA:LM-63-2002\nTILT=INCLUDE\n3\n3\n0 45 90\n0.8 0.6 0.4\n1 -1 1 2 1 1 2 0 0 0\n1 1 5\n0 90\n0\n100 100\n");
   ASSERT_TRUE(file.tilt.has_value());
@@ -173,7 +173,7 @@ TEST(IesTilt, IsLinearBetweenItsAnglesAndOverTheUprightLamp) {
   }
 }
 
-TEST(IesTilt, IsReadFromAFileBesideAndNowhereElse) {
+TEST(IesTilt, IsReadOnlyFromAFileBesideIt) {
   const std::string text = "IESNA91\nTILT=my lamp.tlt\n1 -1 1 2 1 1 2 0 0 0\n1 1 5\n0 90\n0\n100 100\n";
   std::string asked;
   const auto file = parse_ies(text, "f", [&](std::string_view name) {
@@ -211,7 +211,7 @@ struct Opening {
   bool simplified;
 };
 
-TEST(IesOpening, IsTheShapeThatTheSignsOfItsSizesName) {
+TEST(IesOpening, HasTheShapeGivenByTheSignsOfItsSizes) {
   using Kind = LuminousShape::Kind;
   const Opening openings[] = {
       {0, 0, 0, Kind::point, {0, 0, 0}, false},

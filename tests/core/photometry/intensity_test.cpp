@@ -92,7 +92,7 @@ double profile_sr(double beam_rad, double field_rad) {
 }
 
 /// A narrow beam in a wide field with nearly all light outside the beam: this search once never ended.
-TEST(Spot, OfAnyTwoAnglesHasThePeakThatItsFluxGives) {
+TEST(Spot, HasThePeakThatItsFluxGivesForAnyTwoAngles) {
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> share(0, 1);
   for (int i = 0; i < 300; ++i) {
@@ -105,7 +105,7 @@ TEST(Spot, OfAnyTwoAnglesHasThePeakThatItsFluxGives) {
   }
 }
 
-TEST(Spot, IsAGaussianWhereTheRatioOfItsAnglesIsThatOfAGaussian) {
+TEST(Spot, IsAGaussianForAGaussiansRatioOfAngles) {
   const double ratio = std::sqrt(std::log2(10.0));
   const double beam_rad = rad_from_deg(2);
   const Intensity spot = make_spot(1000, beam_rad, beam_rad * ratio);
@@ -131,7 +131,7 @@ TEST(Scaled, KeepsTheShapeAndHasTheFlux) {
   }
 }
 
-TEST(IntensityDeath, StopsACallerWhoAsksForTheImpossible) {
+TEST(IntensityDeath, AbortsOnImpossibleRequests) {
   EXPECT_DEATH((void)make_spot(100, 0.5, 0.5), "beam 0.5 rad, field 0.5 rad");
   EXPECT_DEATH((void)make_isotropic(-1), "flux -1 lm");
   EXPECT_DEATH((void)scaled_to_flux(nullptr, 1), "no distribution");

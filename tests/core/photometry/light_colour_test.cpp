@@ -15,7 +15,7 @@ std::pair<double, double> chromaticity(const Vec3& rgb) {
   return {x / (x + y + z), y / (x + y + z)};
 }
 
-TEST(LightColour, OfBlackBodiesIsThatOfThePlanckianLocus) {
+TEST(LightColour, OfBlackBodiesFollowsThePlanckianLocus) {
   // CIE 15: illuminant A (2856 K) and the locus at round temperatures.
   const struct {
     double cct_k, x, y;
@@ -42,7 +42,7 @@ TEST(LightColour, AlwaysHasALuminanceOfOneAndNoNegativePrimary) {
   }
 }
 
-TEST(LightColour, ScalesAnyColourButBlackAndTheImpossible) {
+TEST(LightColour, ScalesAnyColourExceptBlackAndImpossibleOnes) {
   EXPECT_NEAR(luminance_of_rgb(*with_luminance_1(Vec3(0, 0, 3))), 1, 1e-12);
   EXPECT_FALSE(with_luminance_1(Vec3::Zero()).has_value());
   EXPECT_FALSE(with_luminance_1(Vec3(1, -0.1, 1)).has_value());

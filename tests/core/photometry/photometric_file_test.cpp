@@ -72,7 +72,7 @@ double integrated_lm(const IntensityDistribution& of) {
   return sum * (kPi / kRings) * (2 * kPi / kSpokes);
 }
 
-TEST(PhotometricFiles, LoadWithTheFluxOfTheirCatalogueOrAreRefusedForAReason) {
+TEST(PhotometricFiles, LoadWithTheirCatalogueFluxOrAreRefusedWithAReason) {
   std::set<std::string> seen;
   for (const auto& entry : std::filesystem::directory_iterator(folder())) {
     const std::string name = entry.path().filename().string();
@@ -106,7 +106,7 @@ class NamedWrongly : public testing::Test {
   const std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) / "luxrig_named_wrongly";
 };
 
-TEST_F(NamedWrongly, FilesAreReadByTheirContentWhichIsSaid) {
+TEST_F(NamedWrongly, FilesAreReadByTheirContentWithAWarning) {
   const auto ldt = loaded_as("sample9.ldt", "x.ies");
   ASSERT_TRUE(ldt.has_value()) << ldt.error().front().text();
   EXPECT_NEAR(ldt->intensity->flux_lm(), 10002.8, 0.06);
@@ -117,7 +117,7 @@ TEST_F(NamedWrongly, FilesAreReadByTheirContentWhichIsSaid) {
   EXPECT_EQ(ies->warnings.back(), "named .ldt, but its content is IES LM-63: read as that");
 }
 
-TEST_F(NamedWrongly, CapitalsInAnEndingAreNoMistake) {
+TEST_F(NamedWrongly, CapitalsInAnExtensionAreAccepted) {
   for (const auto& [of, name] : {std::pair{"sample9.ldt", "x.LDT"}, {"comet.ies", "x.IES"}}) {
     const auto there = load_photometric_file(folder() / of), capitals = loaded_as(of, name);
     ASSERT_TRUE(there.has_value() && capitals.has_value());
@@ -126,7 +126,7 @@ TEST_F(NamedWrongly, CapitalsInAnEndingAreNoMistake) {
   }
 }
 
-TEST(PhotometricFiles, AreReadByTheirExtension) {
+TEST(PhotometricFiles, LoadInBothFormatsAndRefuseOthers) {
   const auto ldt = load_photometric_file(folder() / "sample9.ldt");
   ASSERT_TRUE(ldt.has_value());
   EXPECT_DOUBLE_EQ(ldt->input_w, 75);

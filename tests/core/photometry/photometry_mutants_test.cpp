@@ -13,7 +13,7 @@ namespace {
 
 class PhotometryMutants : public testing::TestWithParam<const char*> {};
 
-TEST_P(PhotometryMutants, AreRefusedWithALineOrRead) {
+TEST_P(PhotometryMutants, AreReadOrRefusedWithALine) {
   std::ifstream in(data_file(GetParam()), std::ios::binary);
   const std::string whole((std::istreambuf_iterator<char>(in)), {});
   ASSERT_FALSE(whole.empty());

@@ -82,7 +82,7 @@ TEST_P(Sampling, DensityIntegratesToOne) {
   EXPECT_NEAR(whole, 1, 1e-6);
 }
 
-TEST_P(Sampling, SaysTheDensityThatItReportsForTheDirection) {
+TEST_P(Sampling, DrawsWithTheDensityReportedForTheDirection) {
   std::mt19937_64 random(2);
   std::uniform_real_distribution<double> unit(0, 1);
   for (int i = 0; i < 20'000; ++i) {
@@ -94,7 +94,7 @@ TEST_P(Sampling, SaysTheDensityThatItReportsForTheDirection) {
   }
 }
 
-TEST_P(Sampling, DrawsDirectionsAsItsDensitySays) {
+TEST_P(Sampling, DistributionMatchesItsDensity) {
   constexpr int kRings = 12, kSpokes = 12, kDraws = 200'000;
   const double half_cone = std::min(kPi, 0.5 * light->emission_cone_rad());
   const auto density = [&](const Vec3& d) { return light->density_per_sr(d); };
@@ -132,7 +132,7 @@ TEST_P(Sampling, DrawsDirectionsAsItsDensitySays) {
   EXPECT_NEAR(rest_seen, rest_expected, 5 * std::sqrt(rest_expected + 1));
 }
 
-TEST_P(Sampling, WeighedByItsDensityGivesTheFlux) {
+TEST_P(Sampling, WeightedByItsDensityGivesTheFlux) {
   std::mt19937_64 random(4);
   std::uniform_real_distribution<double> unit(0, 1);
   constexpr int kDraws = 20'000;
@@ -161,7 +161,7 @@ TEST_P(Sampling, HasADensityWhereverThereIsLight) {
   }
 }
 
-TEST_P(Sampling, TakesNearbyPointsToNearbyDirections) {
+TEST_P(Sampling, MapsNearbyPointsToNearbyDirections) {
   std::mt19937_64 random(6);
   std::uniform_real_distribution<double> unit(0, 1);
   int jumps = 0;
@@ -175,7 +175,7 @@ TEST_P(Sampling, TakesNearbyPointsToNearbyDirections) {
   EXPECT_LE(jumps, 2);  // across a gap without light, and where there is next to none
 }
 
-TEST_P(Sampling, HoldsOnTheEdgesOfTheSquare) {
+TEST_P(Sampling, IsValidOnTheEdgesOfTheSquare) {
   const double below_1 = std::nextafter(1.0, 0.0);
   for (const double u : {0.0, 1e-17, 0.25, 0.5, 0.75, below_1, 1.0}) {
     for (const double v : {0.0, 1e-17, 0.25, 0.5, 0.75, below_1, 1.0}) {

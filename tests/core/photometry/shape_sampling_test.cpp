@@ -210,7 +210,7 @@ TEST_P(AnyShape, SamplesLieOnTheNearSideOfTheShapeWithTheDensityTheyState) {
   }
 }
 
-TEST_P(AnyShape, DirectionsAreDrawnWithTheDensityThatIsStated) {
+TEST_P(AnyShape, DirectionsAreDrawnWithTheStatedDensity) {
   const auto& [name, shape, from_m] = GetParam();
   // Moments of the direction: from samples as drawn, and from uniform directions weighted with the density.
   Random random(3);
@@ -239,7 +239,7 @@ TEST_P(AnyShape, DirectionsAreDrawnWithTheDensityThatIsStated) {
   }
 }
 
-TEST_P(AnyShape, NearbyPointsOfTheSquareGiveNearbyDirections) {
+TEST_P(AnyShape, NearbyPointsMapToNearbyDirections) {
   const auto& [name, shape, from_m] = GetParam();
   if (shape.kind == Kind::cylinder) return;  // its wall and its end are two pieces
   Random random(4);
@@ -251,7 +251,7 @@ TEST_P(AnyShape, NearbyPointsOfTheSquareGiveNearbyDirections) {
   }
 }
 
-TEST(ShapeSampling, InverseDensityIsTheSolidAngleOfTheClosedForms) {
+TEST(ShapeSampling, InverseDensityMatchesClosedFormSolidAngles) {
   Random random(5);
   for (int i = 0; i < 300; ++i) {
     // A rectangle above its own corner: atan(ab / (h √(a²+b²+h²))); four such make one about the axis.
@@ -271,7 +271,7 @@ TEST(ShapeSampling, InverseDensityIsTheSolidAngleOfTheClosedForms) {
   }
 }
 
-TEST(ShapeSampling, ProjectedAreasAreThoseOfTheClosedForms) {
+TEST(ShapeSampling, ProjectedAreasMatchClosedForms) {
   Random random(6);
   for (int i = 0; i < 100; ++i) {
     const Vec3 d = random.direction();
@@ -284,7 +284,7 @@ TEST(ShapeSampling, ProjectedAreasAreThoseOfTheClosedForms) {
   }
 }
 
-TEST_P(AnyShape, ProjectedAreaIsTheShadowThatTheShapeThrows) {
+TEST_P(AnyShape, ProjectedAreaIsTheAreaOfItsShadow) {
   const auto& [name, shape, from_m] = GetParam();
   Random random(7);
   const double radius_m = bounding_radius_m(shape);
@@ -342,7 +342,7 @@ TEST_P(AnyShape, LeavingPlacesAreSpreadEvenlyOverTheShadow) {
   }
 }
 
-TEST(ShapeSampling, FromWithinOrInThePlaneNothingIsSeen) {
+TEST(ShapeSampling, NothingIsVisibleFromWithinOrInThePlane) {
   const auto sees = [](const LuminousShape& shape, const Vec3& from_m) {
     const auto s = sample_seen_from(shape, from_m, 0.4, 0.7);
     EXPECT_EQ(s.density_per_sr > 0, density_seen_from(shape, from_m, s.direction) > 0);
@@ -363,7 +363,7 @@ TEST(ShapeSampling, FromWithinOrInThePlaneNothingIsSeen) {
   EXPECT_FALSE(sees({}, {0, 0, 1}));
 }
 
-TEST(ShapeSampling, ShapesWithoutSizeAreNotSeen) {
+TEST(ShapeSampling, ShapesWithoutSizeAreInvisible) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const Vec3 from_m(0.3, 0.4, 0.5);
   for (const double bad : {0.0, -1.0, nan}) {
@@ -378,7 +378,7 @@ TEST(ShapeSampling, ShapesWithoutSizeAreNotSeen) {
               sample_seen_from(disk(1), from_m, 0.4, 0.7).density_per_sr, 1e-9);
 }
 
-TEST(ShapeSampling, AnySizeFromAnyDistanceGivesFinitePlacesOnTheShape) {
+TEST(ShapeSampling, AnySizeAndDistanceGivesFinitePlacesOnTheShape) {
   Random random(9);
   int seen = 0, asked = 0;
   for (int i = 0; i < 50'000; ++i) {
@@ -416,7 +416,7 @@ TEST(ShapeSampling, AnySizeFromAnyDistanceGivesFinitePlacesOnTheShape) {
   EXPECT_GT(seen, asked / 2);
 }
 
-TEST(ShapeSampling, FarAwayTheSolidAngleIsTheProjectedAreaOverTheSquareOfTheDistance) {
+TEST(ShapeSampling, TheFarSolidAngleIsProjectedAreaOverSquaredDistance) {
   Random random(10);
   for (int i = 0; i < 400; ++i) {
     const LuminousShape shape{static_cast<Kind>(1 + i % 4), {0.7, 0.3, 1.1}};

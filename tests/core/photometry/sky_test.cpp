@@ -51,7 +51,7 @@ TEST(UniformSky, HasIlluminanceOfPiTimesItsLuminance) {
   EXPECT_NEAR(type_5->luminance_cd_m2(towards(200, 60)) / sky->luminance_cd_m2(Vec3::UnitZ()), 1, 1e-6);
 }
 
-TEST(GeneralSky, HasTheStandardsRatiosToTheZenith) {
+TEST(GeneralSky, HasTheStandardRatiosToTheZenith) {
   // Independent calculation for type 12 (CIE clear) with the sun at 40°, at 20° altitude and 90° of azimuth from the
   // sun.
   const Sky clear = make_clear_sky(towards(0, 40), 12'000);
@@ -74,14 +74,14 @@ TEST(GeneralSky, HasTheStandardsRatiosToTheZenith) {
 
 class GeneralSkies : public testing::TestWithParam<int> {};
 
-TEST_P(GeneralSkies, HaveTheirHorizontalIlluminanceWhereverTheSunIs) {
+TEST_P(GeneralSkies, HaveTheirHorizontalIlluminanceForAnySunPosition) {
   for (const double altitude : {0.5, 12.0, 45.0, 89.9, 90.0}) {
     const Sky sky = make_general_sky(GetParam(), towards(30, altitude), 20'000);
     EXPECT_NEAR(illuminance_lx(*sky, Vec3::UnitZ(), 300) / 20'000, 1, 1e-4) << altitude;
   }
 }
 
-TEST_P(GeneralSkies, ShineEverywhereAboveTheHorizonAndAreDrawnFromThere) {
+TEST_P(GeneralSkies, ShineAndAreSampledEverywhereAboveTheHorizon) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> unit(0, 1);
   const Sky sky = make_general_sky(GetParam(), towards(-70, 25), 20'000);
@@ -94,7 +94,7 @@ TEST_P(GeneralSkies, ShineEverywhereAboveTheHorizonAndAreDrawnFromThere) {
   }
 }
 
-TEST_P(GeneralSkies, WeighedByTheirDensityGiveTheirIlluminance) {
+TEST_P(GeneralSkies, GiveTheirIlluminanceWhenWeightedByTheirDensity) {
   std::mt19937_64 random(2);
   std::uniform_real_distribution<double> unit(0, 1);
   const Sky sky = make_general_sky(GetParam(), towards(200, 35), 20'000);
@@ -121,7 +121,7 @@ TEST_P(GeneralSkies, WeighedByTheirDensityGiveTheirIlluminance) {
 
 INSTANTIATE_TEST_SUITE_P(Types, GeneralSkies, testing::Range(1, kGeneralSkyTypes + 1));
 
-TEST(Skies, DrawDirectionsAsTheirDensitySays) {
+TEST(Skies, SampleDirectionsAsTheirDensityStates) {
   const Sky skies[] = {make_uniform_sky(1), make_overcast_sky(1), make_clear_sky(towards(100, 30), 1),
                        make_general_sky(15, towards(-20, 3), 1)};
   for (const Sky& sky : skies) {
@@ -182,7 +182,7 @@ TEST(Sun, GivesItsNormalIlluminanceTimesTheSineOfItsAltitude) {
   }
 }
 
-TEST(Sun, ThatTheHorizonHalvesShinesWithItsUpperHalf) {
+TEST(Sun, HalvedByTheHorizonShinesWithItsUpperHalf) {
   const Sky sun = make_sun(towards(0, 1e-9), 1000);
   // Half disk of radius r; its moment about the horizon is L · 2r³/3.
   const double r = 0.5 * kSunDiameter_rad;
@@ -191,7 +191,7 @@ TEST(Sun, ThatTheHorizonHalvesShinesWithItsUpperHalf) {
   EXPECT_GT(sun->luminance_cd_m2(towards(0, 0.1)), 0);
 }
 
-TEST(SkyDeath, StopsACallerWhoAsksForTheImpossible) {
+TEST(SkyDeath, AbortsOnImpossibleRequests) {
   EXPECT_DEATH((void)make_general_sky(16, Vec3::UnitZ(), 1), "sky type 16");
   EXPECT_DEATH((void)make_clear_sky(towards(0, -1), 1), "sun at");
   EXPECT_DEATH((void)make_overcast_sky(0), "0 lx");

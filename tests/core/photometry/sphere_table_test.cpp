@@ -60,7 +60,7 @@ Range azimuths(Symmetry symmetry) {
   }
 }
 
-TEST(SphereTable, DrawsFromAnyTableEvenAtTheEdgesOfTheSquare) {
+TEST(SphereTable, SamplesAnyTableEvenAtTheEdgesOfTheSquare) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> unit(0, 1);
   constexpr Symmetry kAll[] = {Symmetry::round,       Symmetry::quadrant, Symmetry::half_0_180,
@@ -91,7 +91,7 @@ TEST(SphereTable, DrawsFromAnyTableEvenAtTheEdgesOfTheSquare) {
 }
 
 // A table with very different values: the share of directions drawn in the bright half equals its share of the flux.
-TEST(SphereTable, DrawsTheBrightHalfAsOftenAsItsFluxSays) {
+TEST(SphereTable, SamplesTheBrightHalfByItsShareOfTheFlux) {
   const SphereTable table(Symmetry::none, {0, 0.25 * kPi, 0.5 * kPi}, {0, kPi, 2 * kPi},
                           {1e12, 1, 0, 3e-40, 0, 0, 1e12, 1, 0});
   std::mt19937_64 random(3);

@@ -7,7 +7,7 @@
 namespace luxrig {
 namespace {
 
-TEST(SunPosition, AgreesWithThePublishedExampleOfTheSolarPositionAlgorithm) {
+TEST(SunPosition, MatchesThePublishedExampleOfTheSolarPositionAlgorithm) {
   // Reda and Andreas, NREL/TP-560-34302, appendix A.5: 17 October 2003, 12:30:30 at UTC-7, 39.742476° N, 105.1786° W;
   // azimuth 194.34024°, elevation without refraction 39.872046°.
   const SunPosition sun =
@@ -24,13 +24,13 @@ TEST(SunPosition, HasTheDeclinationOfMeeusExample25a) {
   }
 }
 
-TEST(SunPosition, StandsOverTheTropicsAtTheSolsticesAndOverTheEquatorAtTheEquinox) {
+TEST(SunPosition, IsOverTheTropicAtSolsticeAndTheEquatorAtEquinox) {
   // June solstice of 2024: 20 June 20:51 UTC; March equinox of 2024: 20 March 03:06 UTC (almanac).
   EXPECT_NEAR(deg_from_rad(sun_position({2024, 6, 20, 20.85}, 0.5 * kPi, 0).altitude_rad), 23.436, 0.01);
   EXPECT_NEAR(deg_from_rad(sun_position({2024, 3, 20, 3.1}, 0.5 * kPi, 0).altitude_rad), 0, 0.01);
 }
 
-TEST(SunPosition, IsInTheSouthAtNoonInTheEastInTheMorningAndMirroredInTheSouth) {
+TEST(SunPosition, IsSouthAtNoonEastInTheMorningAndMirroredInTheSouthernHemisphere) {
   const double north = rad_from_deg(50);
   // True noon at Greenwich on 15 April is within a minute of 12:00 UTC (the equation of time is 0).
   EXPECT_NEAR(deg_from_rad(sun_position({2023, 4, 15, 12}, north, 0).azimuth_rad), 180, 0.5);
@@ -48,7 +48,7 @@ TEST(SunPosition, CountsHoursPastMidnightIntoTheNextDay) {
   EXPECT_NEAR(a.altitude_rad, b.altitude_rad, 1e-9);
 }
 
-TEST(TowardsSky, HasNorthAlongYAndEastAlongXUnlessTurned) {
+TEST(TowardsSky, HasNorthAlongYAndEastAlongXUnlessRotated) {
   EXPECT_NEAR((towards_sky_world(0, 0) - Vec3::UnitY()).norm(), 0, 1e-15);
   EXPECT_NEAR((towards_sky_world(0.5 * kPi, 0) - Vec3::UnitX()).norm(), 0, 1e-15);
   EXPECT_NEAR((towards_sky_world(1, 0.5 * kPi) - Vec3::UnitZ()).norm(), 0, 1e-15);

@@ -20,7 +20,7 @@ Picture some_picture(int width_px, int height_px) {
   return picture;
 }
 
-TEST(Pfm, GivesBackWhatWasWritten) {
+TEST(Pfm, RoundTrips) {
   for (const auto& [width_px, height_px] : {std::pair(1, 1), std::pair(5, 3), std::pair(3, 64)}) {
     const Picture picture = some_picture(width_px, height_px);
     const auto back = picture_from_pfm(to_pfm(picture));
@@ -32,7 +32,7 @@ TEST(Pfm, GivesBackWhatWasWritten) {
 }
 
 // "PF", size, negative scale for little-endian; rows bottom up.
-TEST(Pfm, IsTheFormatThatOthersRead) {
+TEST(Pfm, FollowsThePublishedFormat) {
   const Picture picture = some_picture(2, 2);
   const std::string bytes = to_pfm(picture);
   EXPECT_TRUE(bytes.starts_with("PF\n2 2\n-1.0\n"));
@@ -41,7 +41,7 @@ TEST(Pfm, IsTheFormatThatOthersRead) {
   EXPECT_EQ(first, 2) << "blue of the lower left pixel";
 }
 
-TEST(Pfm, RefusesWhatIsNotAPicture) {
+TEST(Pfm, RefusesInvalidFilesAndPixels) {
   const std::string good = to_pfm(some_picture(4, 4));
   for (std::size_t cut = 0; cut < good.size(); ++cut) EXPECT_FALSE(picture_from_pfm(good.substr(0, cut))) << cut;
   EXPECT_FALSE(picture_from_pfm(good + "x"));

@@ -12,7 +12,7 @@ namespace {
 
 using namespace picture_fixture;
 
-TEST(Picture, StopsAtTheWantedNoiseAndSaysIt) {
+TEST(Picture, StopsAtTheWantedNoiseAndReportsIt) {
   const RayScene rays(make_cube(2, 0.6));
   int passes_before = 0;
   for (const double wanted : {0.2, 0.05, 0.02}) {
@@ -29,7 +29,7 @@ TEST(Picture, StopsAtTheWantedNoiseAndSaysIt) {
   EXPECT_GT(passes_before, 4);
 }
 
-TEST(Picture, TheCallerMayEndItAfterAnyPass) {
+TEST(Picture, CanBeEndedByTheCallerAfterAnyPass) {
   const RayScene rays(make_cube(2, 0.6));
   PictureOptions options;
   options.wanted_relative_error = 0;
@@ -65,14 +65,14 @@ TEST(Picture, AGlossyFloorReflectsTheRoom) {
   EXPECT_GT(contrast(0.3), 1.3);
 }
 
-TEST(Picture, WhereNothingIsSeenThereIsNoIlluminance) {
+TEST(Picture, HasNoIlluminanceWhereNothingIsSeen) {
   const RayScene rays{Scene{}};
   const auto picture = render_picture(rays, kPictureBulb, std::vector{1.0}, looking({0, 0, 0}, {1, 0, 0}), {});
   ASSERT_TRUE(picture.has_value());
   for (const float lx : picture->illuminance_lx) EXPECT_LT(lx, 0);
 }
 
-TEST(Picture, TheSkyShowsWhereNothingIsHit) {
+TEST(Picture, ShowsTheSkyWhereNothingIsHit) {
   Emitter sky;
   sky.sky = make_uniform_sky(1000);
   const RayScene nothing{Scene{}};
@@ -131,12 +131,12 @@ TEST(PlanView, DrawsWallsDarkAndOpenFloorLightInTheirPlaces) {
   EXPECT_GT(at(100, -50), at(98.15, -50.1)) << "corners are shaded";
 }
 
-TEST(PlanView, OfNothingIsAWhitePixel) {
+TEST(PlanView, OfAnEmptySceneIsAWhitePixel) {
   const RayScene rays{Scene{}};
   EXPECT_EQ(render_plan_view(rays, 500).shade, std::vector{1.0f});
 }
 
-TEST(Picture, PixelAndRayAgree) {
+TEST(Picture, PixelOfIsTheInverseOfRayDirection) {
   Camera camera = looking({1, -2, 0.5}, {0.2, 0.3, 0.9});
   camera.vertical_fov_rad = 0.6;
   for (const double x_px : {0.5, 16.5, 30.0})

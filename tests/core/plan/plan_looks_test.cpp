@@ -18,7 +18,7 @@ Rig rig_with_a_head() {
   return rig;
 }
 
-TEST(Plan, TurnsHeadsAndNothingElse) {
+TEST(Plan, TurnsOnlyHeads) {
   const Rig rig = rig_with_a_head();
   Plan plan = plan_for_two(0.5, 0.25);
   for (PlannedLight& light : plan.tasks[0].lights) light.joints = Joints{rad_from_deg(90), rad_from_deg(-45)};
@@ -43,7 +43,7 @@ TEST(Plan, TurnsHeadsAndNothingElse) {
   EXPECT_NE(refused.error()[0].what.find("/tasks/0/lights/1/tilt_deg"), std::string::npos);
 }
 
-TEST(Plan, ThatLightsAKeepOutZoneIsRefused) {
+TEST(Plan, IsRefusedWhenItLightsAKeepOutZone) {
   Rig rig = rig_with_a_head();
   rig.luminaires.resize(rig.fixtures[1].luminaire + 1);
   Luminaire& luminaire = rig.luminaires[rig.fixtures[1].luminaire];
@@ -71,7 +71,7 @@ TEST(Plan, ThatLightsAKeepOutZoneIsRefused) {
   EXPECT_TRUE(look_for(plan, rig, "plan.json"));
 }
 
-TEST(Plan, ZoomsHeadsThatCan) {
+TEST(Plan, ZoomsHeadsThatCanZoom) {
   Rig rig = rig_with_a_head();
   rig.fixtures[1].range.beam_min_rad = rad_from_deg(10);
   rig.fixtures[1].range.beam_max_rad = rad_from_deg(50);
@@ -93,7 +93,7 @@ TEST(Plan, ZoomsHeadsThatCan) {
 }
 
 // An aim's levels are its own. A later emittance task uses goals again, which are the plan's.
-TEST(Plan, HoldsTheLookOfAnAimUnlessLevelsAreSetAfterIt) {
+TEST(Plan, KeepsTheLookOfAnAimUnlessLevelsAreSetAfterIt) {
   const Rig rig = rig_with_a_head();
   Plan plan = plan_for_two(0.5, 0.25);
   for (const auto& [name, lux] : {std::pair("desk", 120.0), std::pair("floor", 35.0)}) {
@@ -115,7 +115,7 @@ TEST(Plan, HoldsTheLookOfAnAimUnlessLevelsAreSetAfterIt) {
   EXPECT_EQ(look_for(plan, rig, "plan.json")->goal_lx[0], 250);
 }
 
-TEST(Plan, CarriesItsGoalsWeightsAndLimitsAndTheLowerLimitHolds) {
+TEST(Plan, CarriesItsGoalsWeightsAndLimitsAndAppliesTheLowerLimit) {
   Rig rig = rig_with_a_head();
   rig.points[0].max_lx = 400;
   rig.points[0].weight = 2;
@@ -146,7 +146,7 @@ TEST(Plan, CarriesItsGoalsWeightsAndLimitsAndTheLowerLimitHolds) {
   EXPECT_EQ(look_for(plan, rig, "plan.json")->weight[0], 2);
 }
 
-TEST(Plan, TellsALevelThatAPersonWroteFromOneThatWasSolved) {
+TEST(Plan, DistinguishesLevelsSetByHandFromSolvedOnes) {
   const Rig rig = rig_with_a_head();
   Plan plan = plan_for_two(0.05, 0.25);
   plan.tasks[0].lights[1].solved_level = 0.25;
@@ -161,7 +161,7 @@ TEST(Plan, TellsALevelThatAPersonWroteFromOneThatWasSolved) {
   EXPECT_FALSE(look->solved_levels[1]);
 }
 
-TEST(Plan, NamesThePartsOfTheRigThatItWasNotMadeFor) {
+TEST(Plan, NamesThePartsOfTheRigThatHaveChanged) {
   Plan plan = plan_for_two(0.5, 0.25);
   plan.made_for = RigVersion{0xfedcba9876543210U, 2, 3};
   const auto again = plan_from_json(to_json(plan), "plan.json");

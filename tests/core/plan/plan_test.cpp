@@ -96,7 +96,7 @@ Plan random_plan(std::mt19937_64& random) {
   return plan;
 }
 
-TEST(Plan, ReadsBackEveryBitThatItWrote) {
+TEST(Plan, RoundTripsEveryBit) {
   std::mt19937_64 random(1);
   for (int i = 0; i < 200; ++i) {
     const Plan plan = random_plan(random);
@@ -131,7 +131,7 @@ TEST(Plan, HasTheKeysOfTheContractInTheirOrder) {
             R"("limits":[{"point":"desk","max_lux":400.0,"lux":300.0,"met":true}],"seconds":0.5,"seed":7})");
 }
 
-TEST(Plan, LeavesANumberThatIsNotFiniteOut) {
+TEST(Plan, OmitsNonFiniteNumbers) {
   Plan plan = plan_for_two(0.5, 0.5);
   plan.seconds = std::numeric_limits<double>::infinity();
   plan.points.emplace_back();
@@ -149,7 +149,7 @@ TEST(Plan, LeavesANumberThatIsNotFiniteOut) {
   EXPECT_FALSE(read->points[0].goal_lux);
 }
 
-TEST(Plan, WritesANameThatIsNotUtf8WithoutThrowing) {
+TEST(Plan, WritesANonUtf8NameWithoutThrowing) {
   Plan plan = plan_for_two(0, 0);
   plan.tasks[0].name = "\xff\xfe";
   EXPECT_TRUE(plan_from_json(to_json(plan), "plan.json"));
@@ -232,7 +232,7 @@ TEST(Plan, RefusesHostileText) {
   }
 }
 
-TEST(Plan, TakesSoManyValuesAsItMayHaveMemoryFor) {
+TEST(Plan, RefusesMoreValuesThanItsMemoryBound) {
   std::string many = "[0";
   for (int i = 0; i < 2'000'000; ++i) many += ",0";
   const auto values = plan_from_json(many + "]", "bad.json");
@@ -245,7 +245,7 @@ TEST(Plan, TakesSoManyValuesAsItMayHaveMemoryFor) {
   EXPECT_NE(object.error()[0].what.find("more than 1000 keys"), std::string::npos) << object.error()[0].text();
 }
 
-TEST(Plan, IgnoresKeysThatALaterVersionAdds) {
+TEST(Plan, IgnoresKeysOfLaterVersions) {
   EXPECT_TRUE(plan_from_json(R"({"luxrig_plan":1,"rig":"r","tasks":[{"name":"t","lights":[],"coverage":1}],"new":{}})",
                              "plan.json"));
 }
@@ -258,7 +258,7 @@ TEST(Plan, GivesTheLevelsInTheRigsOrder) {
   EXPECT_EQ(*levels, (std::vector<double>{0.25, 0.5}));
 }
 
-TEST(Plan, CountsTheLastTaskThatNamesAFixture) {
+TEST(Plan, UsesTheLastTaskThatNamesAFixture) {
   Plan plan = plan_for_two(0.25, 0.5);
   plan.tasks.push_back({.name = "more", .kind = "emittance", .lights = {light("left", 0.75)}});
   const auto levels = levels_for(plan, two_fixture_rig(), "plan.json");
@@ -266,7 +266,7 @@ TEST(Plan, CountsTheLastTaskThatNamesAFixture) {
   EXPECT_EQ(*levels, (std::vector<double>{0.75, 0.5}));
 }
 
-TEST(Plan, IsRefusedForAnotherRigOrWithLevelsThatTheRigCannotGive) {
+TEST(Plan, IsRefusedForAnotherRigOrWithImpossibleLevels) {
   const Rig rig = two_fixture_rig();
   Plan other = plan_for_two(0.5, 0.5);
   other.rig = "hall";
@@ -322,7 +322,7 @@ Rig rig_with_a_bulb() {
   return rig;
 }
 
-TEST(Plan, KeepsWhatAPlacementFound) {
+TEST(Plan, KeepsTheResultOfAPlacement) {
   const Plan plan = plan_that_places();
   const auto read = plan_from_json(to_json(plan), "plan.json");
   ASSERT_TRUE(read);
@@ -340,7 +340,7 @@ TEST(Plan, KeepsWhatAPlacementFound) {
   EXPECT_FALSE(read->tasks[0].lower_bound);
 }
 
-TEST(Plan, WithLightsThatDoNotHangYetIsRefusedAndSaysWhatToDo) {
+TEST(Plan, IsRefusedWithARemedyWhileItsLightsAreUnhung) {
   const auto levels = levels_for(plan_that_places(), rig_with_a_bulb(), "plan.json");
   ASSERT_FALSE(levels);
   ASSERT_EQ(levels.error().size(), 1u);
@@ -378,7 +378,7 @@ TEST(Plan, HangsPlacedLightsInTheModel) {
   EXPECT_LE((pose.rotation * Vec3(0, 0, -1) - Vec3(0, 1, 0)).norm(), 1e-12);
 }
 
-TEST(Plan, RefusesToHangWhatItCannot) {
+TEST(Plan, RefusesToHangInvalidLights) {
   Plan unknown = plan_that_places(), nowhere = plan_that_places(), bright = plan_that_places(),
        itself = plan_that_places(), levels_task = plan_that_places();
   unknown.tasks[1].lights[0].luminaire = "blub";
@@ -437,7 +437,7 @@ TEST(Plan, CarriesPowerAndColour) {
 }
 
 // The person who hangs lamps is given the lamp's name, not that of an emitter.
-TEST(Plan, NamesTheHousingOfEmittersThatDoNotHangYet) {
+TEST(Plan, NamesTheHousingOfUnhungEmitters) {
   Rig rig = two_fixture_rig();
   rig.luminaires.resize(2);
   rig.luminaires[0].name = "par";
@@ -454,7 +454,7 @@ TEST(Plan, NamesTheHousingOfEmittersThatDoNotHangYet) {
   EXPECT_NE(levels.error()[0].mend.find("called \"more 1\""), std::string::npos) << levels.error()[0].text();
 }
 
-TEST(Plan, CarriesWhatLightsDoForARelief) {
+TEST(Plan, CarriesTheResultsForARelief) {
   Plan plan = plan_for_two(0.5, 0.25);
   plan.tasks[0].kind = "aim";
   PlannedRelief relief;

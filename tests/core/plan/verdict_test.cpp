@@ -29,7 +29,7 @@ TEST(Verdict, IsMissedOnlyWhenTheWholeIntervalLiesOutsideTheTolerance) {
   EXPECT_EQ(verdict_of({411.7, 8}, 500, 50), Verdict::missed);
 }
 
-TEST(Verdict, OfWhatIsNotANumberIsUnknown) {
+TEST(Verdict, IsUnknownForValuesThatAreNotNumbers) {
   const double infinity = std::numeric_limits<double>::infinity();
   EXPECT_EQ(verdict_of({kNotANumber, 0}, 200, 10), Verdict::unknown);
   EXPECT_EQ(verdict_of({200, kNotANumber}, 200, 10), Verdict::unknown);
@@ -37,13 +37,13 @@ TEST(Verdict, OfWhatIsNotANumberIsUnknown) {
   EXPECT_EQ(verdict_of({infinity, infinity}, 200, 10), Verdict::unknown);
 }
 
-TEST(Verdict, OfAGoalOfNothingGoesByTheLargestGoalBesideIt) {
+TEST(Verdict, OfAZeroGoalUsesTheLargestGoalBesideIt) {
   EXPECT_DOUBLE_EQ(tolerance_lx(0, 0.1, 300), 30);
   EXPECT_DOUBLE_EQ(tolerance_lx(50, 0.1, 300), 5);
   EXPECT_EQ(verdict_of({2, 1}, 0, tolerance_lx(0, 0.1, 300)), Verdict::met);
 }
 
-TEST(Verdict, IsRarelyWrongWhenTheStatedErrorIsRight) {
+TEST(Verdict, IsRarelyWrongWhenTheStatedErrorIsCorrect) {
   std::mt19937_64 random(7);
   std::normal_distribution<double> normal;
   int met = 0, wrongly_met = 0, missed = 0, wrongly_missed = 0;
@@ -70,7 +70,7 @@ TEST(Verdict, OfAReadingCountsTheMetersTolerance) {
   EXPECT_EQ(verdict_of(estimate_of_reading(200, 0.005, 0.055, 0.1), 200, 10), Verdict::unknown);
 }
 
-TEST(Verdict, SaysHowMuchIsMissingAndWhatWouldSettleIt) {
+TEST(Verdict, StatesTheShortfallAndWhatWouldSettleIt) {
   EXPECT_EQ(reason_of(Verdict::met, {200, 1}, 200, 10, "x", "y"), "");
   EXPECT_EQ(reason_of(Verdict::missed, {411.7, 1}, 500, 50, "", "y"), "17.7 % too dark");
   EXPECT_EQ(reason_of(Verdict::missed, {600, 1}, 500, 50, "spot-1 is off already", "y"),
@@ -80,7 +80,7 @@ TEST(Verdict, SaysHowMuchIsMissingAndWhatWouldSettleIt) {
   EXPECT_EQ(reason_of(Verdict::unknown, {kNotANumber, 0}, 200, 10, "", ""), "not known");
 }
 
-TEST(Verdict, CountsAreSaidAsTheyAre) {
+TEST(Verdict, CountsAreWordedPlainly) {
   EXPECT_EQ(text_of(VerdictCounts{}), "no goals");
   EXPECT_EQ(text_of({1, 0, 0}), "the goal is met");
   EXPECT_EQ(text_of({6, 0, 0}), "all 6 goals met");
@@ -97,7 +97,7 @@ PlannedPoint planned(const std::string& name, std::optional<double> goal_lux, do
   return point;
 }
 
-TEST(PlanVerdicts, AGoalThatTheLimitsKeepOutOfReachIsMissedWithTheReason) {
+TEST(PlanVerdicts, AGoalKeptOutOfReachIsMissedWithItsReason) {
   Plan plan;
   plan.points = {planned("a", 200, 199, 1), planned("b", 500, 411.7, 1), planned("c", 200, 205, 20),
                  planned("d", {}, 77, 1)};

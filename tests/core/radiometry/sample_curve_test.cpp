@@ -19,7 +19,7 @@ TEST(SampleCurve, FollowsPublishedValuesOfSrgbAndBt709) {
   EXPECT_NEAR(bt709.light(0.5), 0.25959, 2e-5);
 }
 
-TEST(SampleCurve, HasNoLightAtTheDarkLevelAndLessBelow) {
+TEST(SampleCurve, IsZeroAtTheDarkLevelAndNegativeBelow) {
   const SampleCurve linear = SampleCurve::linear(0.05);
   EXPECT_NEAR(linear.light(0.05), 0, 1e-15);
   EXPECT_NEAR(linear.light(0.525), 0.5, 1e-12);
@@ -27,14 +27,14 @@ TEST(SampleCurve, HasNoLightAtTheDarkLevelAndLessBelow) {
   EXPECT_NEAR(SampleCurve::srgb(0.1).light(0.1 + 0.9 * 0.5), 0.21404, 1e-5);
 }
 
-TEST(SampleCurve, IsReadAgainAsItWasWritten) {
+TEST(SampleCurve, RoundTrips) {
   const SampleCurve curve = SampleCurve::power(2.2, 0.03);
   const auto again = sample_curve_from_csv(to_csv(curve));
   ASSERT_TRUE(again) << again.error().detail;
   for (double x = 0; x <= 1; x += 0.01) EXPECT_NEAR(again->light(x), curve.light(x), 1e-8) << x;
 }
 
-TEST(SampleCurve, RefusesWhatIsNoResponse) {
+TEST(SampleCurve, RefusesInvalidResponses) {
   const auto refused = [](const char* text) {
     const auto curve = sample_curve_from_csv(text);
     return curve ? std::string() : curve.error().detail;

@@ -49,7 +49,7 @@ bool meets(const Problem& problem, const std::string& expected) {
 
 class BadRig : public testing::TestWithParam<std::string> {};
 
-TEST_P(BadRig, IsRefusedWithPlaceAndMendAndNothingElse) {
+TEST_P(BadRig, IsRefusedOnlyWithItsPlacesAndRemedies) {
   const std::filesystem::path path = kFolder / (GetParam() + ".toml");
   const auto expected = expectations(path);
   ASSERT_FALSE(expected.empty()) << "its first line must be # expect: line:column: text";
@@ -74,9 +74,9 @@ TEST_P(BadRig, IsRefusedWithPlaceAndMendAndNothingElse) {
 
 INSTANTIATE_TEST_SUITE_P(All, BadRig, testing::ValuesIn(bad_rigs()), [](const auto& rig) { return rig.param; });
 
-TEST(BadRigs, AreManyAndEachStandsInItsOwnFile) { EXPECT_GE(bad_rigs().size(), 30u); }
+TEST(BadRigs, AreAtLeastThirty) { EXPECT_GE(bad_rigs().size(), 30u); }
 
-TEST(BadRigs, OfAnUnusablePhotometricFileGetThatFilesOwnProblemsToo) {
+TEST(BadRigs, WithABadPhotometricFileListThatFilesProblems) {
   const Checked<Rig> rig = load_rig(kFolder / "broken_ies.toml");
   ASSERT_FALSE(rig);
   EXPECT_TRUE(std::any_of(rig.error().begin(), rig.error().end(),

@@ -22,13 +22,13 @@ Daylight daylight_of(const std::string& text) {
 
 using SkyKind = Daylight::SkyKind;
 
-TEST(DaylightOfARig, IsNoneUnlessTheFileHasTheTable) {
+TEST(DaylightOfARig, IsAbsentWithoutItsTable) {
   const Checked<Rig> rig = parse_rig("[rig]\nname = \"dark\"\n", "dark.toml", ".");
   ASSERT_TRUE(rig);
   EXPECT_FALSE(rig->daylight);
 }
 
-TEST(DaylightOfARig, TakesEachSky) {
+TEST(DaylightOfARig, AcceptsEverySky) {
   const char* sun = "\nhorizontal_lx = 9000\nsun_azimuth_deg = 90\nsun_elevation_deg = 30\n";
   EXPECT_EQ(daylight_of(std::string("sky = \"uniform\"") + sun).sky, SkyKind::uniform);
   EXPECT_EQ(daylight_of(std::string("sky = \"overcast\"") + sun).sky, SkyKind::overcast);
@@ -42,14 +42,14 @@ TEST(DaylightOfARig, TakesEachSky) {
   }
 }
 
-TEST(DaylightOfARig, SkiesThatAreEvenAboutTheZenithNeedNoSun) {
+TEST(DaylightOfARig, SkiesSymmetricAboutTheZenithNeedNoSun) {
   for (const int type : {1, 3, 5})
     EXPECT_TRUE(rig_with(fmt::format("sky = \"general\"\nsky_type = {}\nhorizontal_lx = 9000\n", type))) << type;
   for (const int type : {2, 4, 6, 12})
     EXPECT_FALSE(rig_with(fmt::format("sky = \"general\"\nsky_type = {}\nhorizontal_lx = 9000\n", type))) << type;
 }
 
-TEST(DaylightOfARig, NorthTurnsTheSun) {
+TEST(DaylightOfARig, NorthRotatesTheSun) {
   const auto towards = [](double azimuth_deg, double north_deg) {
     return daylight_of(fmt::format("sky = \"clear\"\nsun_azimuth_deg = {}\nsun_elevation_deg = 60\nnorth_deg = {}\n",
                                    azimuth_deg, north_deg))
@@ -63,7 +63,7 @@ TEST(DaylightOfARig, NorthTurnsTheSun) {
   EXPECT_LT((towards(90, -90) - Vec3(0, -h, up)).norm(), 1e-12);
 }
 
-TEST(DaylightOfARig, PlaceAndTimeAreTheSunsPositionThen) {
+TEST(DaylightOfARig, PlaceAndTimeGiveTheSunsPosition) {
   // Reda and Andreas, NREL/TP-560-34302, appendix A.5: azimuth 194.34024°, elevation without refraction 39.872046°.
   const Vec3 sun = daylight_of(
                        "sky = \"clear\"\nlatitude_deg = 39.742476\nlongitude_deg = -105.1786\n"
@@ -73,7 +73,7 @@ TEST(DaylightOfARig, PlaceAndTimeAreTheSunsPositionThen) {
   EXPECT_NEAR(deg_from_rad(std::atan2(sun.x(), sun.y())), 194.34024 - 360, 0.01);
 }
 
-TEST(DaylightOfARig, UnmeasuredSkiesHaveTheMeanForTheSunsHeight) {
+TEST(DaylightOfARig, UnmeasuredSkiesUseTheMeanForTheSunsHeight) {
   // IES 1984 at 30°: clear 0.8 + 15.5 √½, overcast 0.3 + 21/2, partly cloudy 0.3 + 45/2 klx.
   const char* sun = "\nsun_azimuth_deg = 0\nsun_elevation_deg = 30\n";
   const Daylight clear = daylight_of(std::string("sky = \"clear\"") + sun);
@@ -92,7 +92,7 @@ TEST(DaylightOfARig, UnmeasuredSkiesHaveTheMeanForTheSunsHeight) {
   EXPECT_EQ(daylight_of(std::string("sky = \"clear\"\nsun = false") + sun).sun_normal_lx, 0);
 }
 
-TEST(DaylightOfARig, AtNightThereIsNoneAndANoteSaysSo) {
+TEST(DaylightOfARig, IsAbsentAtNightWithANote) {
   const char* night = "latitude_deg = 52.5\nlongitude_deg = 13.4\ntime = \"2026-06-21T00:00:00+02:00\"\n";
   const Checked<Rig> dark = rig_with(std::string("sky = \"clear\"\n") + night);
   ASSERT_TRUE(dark);
@@ -120,7 +120,7 @@ TEST(Moment, IsReadWithItsOffset) {
   EXPECT_TRUE(utc_time("2000-02-29T00:00Z"));
 }
 
-TEST(Moment, RefusesWhatIsNone) {
+TEST(Moment, RefusesInvalidTimes) {
   for (const char* text : {"",
                            "now",
                            "2026",
@@ -150,7 +150,7 @@ TEST(Moment, RefusesWhatIsNone) {
     EXPECT_FALSE(utc_time(text)) << text;
 }
 
-TEST(Moment, KnowsItsDayOfTheYear) {
+TEST(Moment, GivesItsDayOfTheYear) {
   EXPECT_EQ(day_of_year({2026, 1, 1, 0}), 1);
   EXPECT_EQ(day_of_year({2026, 12, 31, 0}), 365);
   EXPECT_EQ(day_of_year({2024, 12, 31, 0}), 366);

@@ -30,7 +30,7 @@ Pose random_mount(std::mt19937& random) {
   return {q.normalized().toRotationMatrix(), Vec3(normal(random), normal(random), normal(random)) * 10};
 }
 
-TEST(Frames, BeamFollowsTheFormulaOfTheHeader) {
+TEST(Frames, BeamFollowsTheDocumentedFormula) {
   for (double pan = -3; pan < 3; pan += 0.37) {
     for (double tilt = -2; tilt < 2; tilt += 0.29) {
       const Vec3 expected(-std::sin(pan) * std::sin(tilt), std::cos(pan) * std::sin(tilt), -std::cos(tilt));
@@ -84,7 +84,7 @@ TEST(PanTiltTowards, MeetsTheTestVectors) {
   EXPECT_EQ(raw(*down).second, 0x8000);
 }
 
-TEST(PanTiltTowards, OnATieDoesNotFlip) {
+TEST(PanTiltTowards, DoesNotFlipOnATie) {
   // From the middle, both postures for +X need a quarter turn of each joint.
   const auto from_middle = pan_tilt_towards({}, Vec3::UnitX(), {}, {});
   ASSERT_TRUE(from_middle);
@@ -92,7 +92,7 @@ TEST(PanTiltTowards, OnATieDoesNotFlip) {
   EXPECT_NEAR(from_middle->tilt_rad, rad_from_deg(90), kTight_rad);
 }
 
-TEST(PanTiltTowards, PointsWhereItWasAskedFromAnyMount) {
+TEST(PanTiltTowards, PointsAsAskedFromAnyMount) {
   std::mt19937 random(1);
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> exponent(-200, 200);
@@ -160,7 +160,7 @@ TEST(PanTiltTowards, TakesTheNearestOfAllPosturesAndImages) {
   EXPECT_GT(unreachable, 100);
 }
 
-TEST(PanTiltTowards, GoesOnTurningInsteadOfUnwindingWhenTheTravelAllows) {
+TEST(PanTiltTowards, KeepsTurningInsteadOfUnwindingWhenTheTravelAllows) {
   // At pan 260°, a head with more travel goes on to 280° when asked for pan -80° (= 280°).
   const JointRange wide{rad_from_deg(-360), rad_from_deg(360), rad_from_deg(-135), rad_from_deg(135)};
   const Vec3 d = beam_world({}, joints_deg(-80, 60));
@@ -169,7 +169,7 @@ TEST(PanTiltTowards, GoesOnTurningInsteadOfUnwindingWhenTheTravelAllows) {
   EXPECT_NEAR(joints->pan_rad, rad_from_deg(280), kTight_rad);
 }
 
-TEST(PanTiltTowards, ReachesAJointsVeryStop) {
+TEST(PanTiltTowards, ReachesTheStopOfAJoint) {
   const JointRange range{rad_from_deg(-90), rad_from_deg(90), 0, rad_from_deg(90)};
   for (const double pan_deg : {-90.0, 90.0}) {
     const auto joints = pan_tilt_towards({}, beam_world({}, joints_deg(pan_deg, 90)), range, {});
@@ -185,13 +185,13 @@ TEST(PanTiltTowards, StraightDownFromOutsideTheTravelGoesToItsNearestStop) {
   EXPECT_EQ(joints->pan_rad, 1);
 }
 
-TEST(PanTiltTowards, SaysWhenADirectionIsOutOfReach) {
+TEST(PanTiltTowards, ReportsADirectionOutOfReach) {
   EXPECT_FALSE(pan_tilt_towards({}, Vec3::UnitZ(), {}, {}));  // straight up: tilt 180° of 135°
   EXPECT_FALSE(pan_tilt_towards({}, -Vec3::UnitZ(), {-1, 1, 0.5, 1}, {}));
   EXPECT_FALSE(pan_tilt_towards({}, Vec3::UnitY(), {1, -1, -2, 2}, {}));  // an inverted range holds nothing
 }
 
-TEST(PanTiltTowardsDeathTest, RefusesADirectionThatIsNone) {
+TEST(PanTiltTowardsDeathTest, AbortsOnAnInvalidDirection) {
   EXPECT_DEATH((void)pan_tilt_towards({}, Vec3::Zero(), {}, {}), "no direction");
   EXPECT_DEATH((void)pan_tilt_towards({}, Vec3::Constant(std::nan("")), {}, {}), "no direction");
 }

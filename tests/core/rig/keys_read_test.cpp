@@ -229,7 +229,7 @@ TEST_F(KeysRead, ChangingAnyKeyChangesTheRig) {
   }
 }
 
-TEST_F(KeysRead, LeavingAKeyOutIsWritingItsDefault) {
+TEST_F(KeysRead, OmittingAKeyEqualsWritingItsDefault) {
   std::set<std::pair<std::string, std::string>> tried;
   for (const char* daylight : {kitchen_sink::kSunByAngles, kitchen_sink::kSunByPlace}) {
     const auto sink = kitchen_sink::lines(std::string(kitchen_sink::kRig) + daylight, SectionSpec::File::rig);

@@ -33,7 +33,7 @@ double narrowness(const Checked<PhotometricFile>& file) {
          file->intensity->intensity_cd(Vec3(std::sqrt(0.5), 0, -std::sqrt(0.5)));
 }
 
-TEST(GldfFiles, GiveTheLightOfTheVariantAndEmitterThatAreMeant) {
+TEST(GldfFiles, GiveTheLightOfTheChosenVariantAndEmitter) {
   const auto path = luminaire_data() / "two_heads.gldf";
   const auto down = load_luminaire_file(path, {"v10", "direct10"});
   ASSERT_TRUE(down.has_value()) << refusal_of(down);
@@ -50,7 +50,7 @@ TEST(GldfFiles, GiveTheLightOfTheVariantAndEmitterThatAreMeant) {
   EXPECT_NEAR(narrowness(up), 200 / (180 + 0.25 * 20), 0.03);  // the IES file
 }
 
-TEST(GldfFiles, AreRefusedWithTheNamesWherePartsDiffer) {
+TEST(GldfFiles, AreRefusedWithTheirNamesWithoutAChoice) {
   const auto path = luminaire_data() / "two_heads.gldf";
   const std::string variants = refusal_of(load_luminaire_file(path));
   EXPECT_NE(variants.find(R"(product.xml:48:6: the file has 3 variants: "v10" ("Pendant 10 W"), "v15")"),
@@ -65,7 +65,7 @@ TEST(GldfFiles, AreRefusedWithTheNamesWherePartsDiffer) {
   EXPECT_NE(linked.find("not in the file, but at \"https://example.org/far.ies\""), std::string::npos) << linked;
 }
 
-TEST(GldfFiles, NeedNoChoiceWhereAllVariantsShineAlike) {
+TEST(GldfFiles, NeedNoChoiceBetweenEqualVariants) {
   const auto file = load_luminaire_file(luminaire_data() / "colours.gldf");
   ASSERT_TRUE(file.has_value()) << refusal_of(file);
   EXPECT_NEAR(flux_lm(file), 1800, 1e-9);
@@ -83,7 +83,7 @@ TEST(Tm33Files, GiveTheirIntensitiesInCandela) {
   EXPECT_TRUE(file->warnings.empty());
 }
 
-TEST(Tm33Files, WithSeveralEmittersNeedAChoice) {
+TEST(Tm33Files, NeedAChoiceBetweenSeveralEmitters) {
   const auto path = luminaire_data() / "tm33_23.xml";
   const std::string refused = refusal_of(load_luminaire_file(path));
   EXPECT_NE(refused.find(R"(tm33_23.xml:2:2: the file has 2 emitters: "down" ("main light"), "glow" ("night light"))"),
@@ -97,7 +97,7 @@ TEST(Tm33Files, WithSeveralEmittersNeedAChoice) {
   EXPECT_NE(refusal_of(load_luminaire_file(path, {{}, "marker"})).find("no emitter is called"), std::string::npos);
 }
 
-TEST(Tm33Files, SayWithALineWhatIsWrong) {
+TEST(Tm33Files, ReportErrorsWithTheirLine) {
   const std::string good = luminaire_text(luminaire_data() / "tm33_18.xml");
   const auto changed = [&](std::string_view from, std::string_view to) {
     std::string text = good;
@@ -125,7 +125,7 @@ TEST(Tm33Files, AreReadInUtf16) {
   EXPECT_NEAR(flux_lm(file), 100 * kPi, 3);
 }
 
-TEST(LuminaireFiles, ArePartOfARig) {
+TEST(LuminaireFiles, LoadAsLuminairesOfARig) {
   const auto rig = [](const std::string& keys) {
     return parse_rig("[rig]\nname = \"r\"\n[[luminaire]]\nname = \"l\"\nmodel = \"ies\"\n" + keys, "rig.toml",
                      luminaire_data());
@@ -168,7 +168,7 @@ void expect_read_or_refused(const Checked<PhotometricFile>& file, int i) {
   for (const Problem& problem : file.error()) ASSERT_FALSE(problem.what.empty() || problem.mend.empty()) << i;
 }
 
-TEST(LuminaireMutants, OfTm33AreRefusedOrRead) {
+TEST(LuminaireMutants, OfTm33AreReadOrRefused) {
   const std::string whole = luminaire_text(luminaire_data() / "tm33_18.xml");
   Random random(33);
   int read = 0;
@@ -183,7 +183,7 @@ TEST(LuminaireMutants, OfTm33AreRefusedOrRead) {
   EXPECT_GT(read, 100);
 }
 
-TEST(LuminaireMutants, OfGldfAreRefusedOrRead) {
+TEST(LuminaireMutants, OfGldfAreReadOrRefused) {
   const std::string product = luminaire_text(test::source_folder() / "tests/fuzz/corpus/gldf/colours");
   const std::string archive = luminaire_text(luminaire_data() / "colours.gldf");
   std::ostringstream ldt;

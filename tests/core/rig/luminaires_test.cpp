@@ -24,7 +24,7 @@ Luminaire luminaire_of(const std::string& keys) {
 
 Vec3 at(double gamma_deg) { return {std::sin(rad_from_deg(gamma_deg)), 0, -std::cos(rad_from_deg(gamma_deg))}; }
 
-TEST(Luminaires, OfARectangleOrDiskAreLambertianAndFaceDown) {
+TEST(Luminaires, RectanglesAndDisksAreLambertianAndFaceDown) {
   using Kind = LuminousShape::Kind;
   const Luminaire panel = luminaire_of("model = \"rectangle\"\nlength_m = 1.2\nwidth_m = 0.3\nlumens = 3600\n");
   EXPECT_EQ(panel.shape, (LuminousShape{Kind::rectangle, Vec3(1.2, 0.3, 0)}));
@@ -35,7 +35,7 @@ TEST(Luminaires, OfARectangleOrDiskAreLambertianAndFaceDown) {
   EXPECT_NEAR(downlight.intensity->max_intensity_cd(), 900 / kPi, 1e-9);
 }
 
-TEST(Luminaires, OfACosineFallAsItsPower) {
+TEST(Luminaires, CosineLuminairesFallOffByTheirPower) {
   const Luminaire lamp = luminaire_of("model = \"cosine\"\nexponent = 4\nlumens = 900\n");
   const double peak_cd = 900 * 5 / (2 * kPi);
   EXPECT_NEAR(lamp.intensity->intensity_cd(at(0)), peak_cd, 1e-9);
@@ -52,7 +52,7 @@ TEST(Luminaires, OfACosineFallAsItsPower) {
             std::string::npos);
 }
 
-TEST(Luminaires, OfASphereOrCylinderHaveOneLuminanceAllOver) {
+TEST(Luminaires, SpheresAndCylindersHaveUniformLuminance) {
   using Kind = LuminousShape::Kind;
   const Luminaire globe = luminaire_of("model = \"sphere\"\ndiameter_m = 0.4\nlumens = 900\n");
   EXPECT_EQ(globe.shape, (LuminousShape{Kind::sphere, Vec3(0.4, 0, 0)}));
@@ -67,7 +67,7 @@ TEST(Luminaires, OfASphereOrCylinderHaveOneLuminanceAllOver) {
   EXPECT_NEAR(tube.lumens, 2400, 0);
 }
 
-TEST(Luminaires, TakeTheFileOfEitherFormat) {
+TEST(Luminaires, AcceptFilesOfEitherFormat) {
   const Luminaire ldt = luminaire_of("model = \"ies\"\nfile = \"sample9.ldt\"\n");
   EXPECT_NEAR(ldt.lumens, 10002.8, 0.1);
   const Luminaire ies = luminaire_of("model = \"ies\"\nfile = \"type_b_full.ies\"\nlumens = 1000\n");
@@ -75,7 +75,7 @@ TEST(Luminaires, TakeTheFileOfEitherFormat) {
   EXPECT_TRUE(luminaire_of("model = \"ies\"\nfile = \"tilt_include_geometry2.ies\"\n").tilt.has_value());
 }
 
-TEST(Luminaires, ShineFromTheFilesOpeningOnlyWhenAskedTo) {
+TEST(Luminaires, UseTheFilesOpeningOnlyWhenAsked) {
   EXPECT_EQ(luminaire_of("model = \"ies\"\nfile = \"sample9.ldt\"\n").shape, LuminousShape{});
   const Luminaire near = luminaire_of("model = \"ies\"\nfile = \"sample9.ldt\"\nnear_field = true\n");
   EXPECT_EQ(near.shape, (LuminousShape{LuminousShape::Kind::rectangle, Vec3(0.065, 1.75, 0)}));
@@ -101,7 +101,7 @@ TEST(Luminaires, HaveAColourWithALuminanceOfOne) {
   EXPECT_NEAR(stated.x() / stated.z(), 4, 1e-12);
 }
 
-TEST(Luminaires, TakeAChromaticity) {
+TEST(Luminaires, AcceptAChromaticity) {
   const Vec3 inside = luminaire_of("model = \"isotropic\"\nlumens = 1\nxy = [0.45, 0.41]\n").colour_rgb;
   EXPECT_NEAR(luminance_of_rgb(inside), 1, 1e-12);
   EXPECT_NEAR((xy_of_rgb(inside) - Chromaticity(0.45, 0.41)).norm(), 0, 1e-12);
@@ -114,7 +114,7 @@ TEST(Luminaires, TakeAChromaticity) {
     EXPECT_NEAR((xy_of_rgb(rgb) - xy).norm(), 0, 2e-5);
 }
 
-TEST(Luminaires, AColourOutsideRec709IsMovedToItsEdgeWithANote) {
+TEST(Luminaires, ClampAColourOutsideRec709ToItsEdgeWithANote) {
   const Checked<Rig> rig = parse_rig(
       "[rig]\nname = \"r\"\n[[luminaire]]\nname = \"l\"\nmodel = \"isotropic\"\nlumens = 1\nxy = [0.69, 0.31]\n",
       "rig.toml", kData);
@@ -159,7 +159,7 @@ bus = "dmx"
 address = 18
 )";
 
-TEST(Luminaires, WithEmittersNeedNoSlotsOnANullBus) {
+TEST(Luminaires, EmittersNeedNoSlotsOnANullBus) {
   std::string text = kPar;
   text.replace(text.find("\"sacn\""), 6, "\"null\"");
   for (const char* line : {"address = 11\n", "address = 18\n",
@@ -175,7 +175,7 @@ TEST(Luminaires, WithEmittersNeedNoSlotsOnANullBus) {
   EXPECT_EQ(rig->fixtures[1].name, "a/white");
 }
 
-TEST(Luminaires, WithEmittersAreOneEachAndAllOfThemTogether) {
+TEST(Luminaires, EmittersAreOneLuminaireEachAndOneTogether) {
   const Checked<Rig> rig = parse_rig(kPar, "rig.toml", kData);
   ASSERT_TRUE(rig) << rig.error().front().text();
   ASSERT_EQ(rig->luminaires.size(), 3u);
@@ -194,7 +194,7 @@ TEST(Luminaires, WithEmittersAreOneEachAndAllOfThemTogether) {
   EXPECT_NEAR((150 * red.colour_rgb + 300 * white.colour_rgb - 450 * par.colour_rgb).norm(), 0, 1e-9);
 }
 
-TEST(Fixtures, OfALuminaireWithEmittersAreOneForEach) {
+TEST(Fixtures, OfALuminaireWithEmittersAreOnePerEmitter) {
   const Checked<Rig> rig = parse_rig(kPar, "rig.toml", kData);
   ASSERT_TRUE(rig) << rig.error().front().text();
   ASSERT_EQ(rig->fixtures.size(), 3u);
@@ -232,7 +232,7 @@ TEST(Fixtures, OfALuminaireWithEmittersAreOneForEach) {
                                                                {Use::unused, false}}));
 }
 
-TEST(Points, HaveGoalsOfAColour) {
+TEST(Points, CanHaveColourGoals) {
   const std::string head = "[rig]\nname = \"r\"\n[[point]]\nname = \"p\"\nposition_m = [0, 0, 0]\ngoal_lx = 100\n";
   const Checked<Rig> warm = parse_rig(head + "goal_cct_k = 3000\n", "rig.toml", kData);
   ASSERT_TRUE(warm);
@@ -249,7 +249,7 @@ TEST(Points, HaveGoalsOfAColour) {
 }
 
 // LM-63 draws type A with its beam level; aim_m is the place for the beam, whatever the type.
-TEST(Luminaires, OfEveryIesTypeShineWhereTheyAreAimed) {
+TEST(Luminaires, EveryIesTypeShinesWhereItIsAimed) {
   const auto folder = std::filesystem::path(testing::TempDir()) / "luxrig_ies_aims";
   std::filesystem::create_directories(folder);
   for (const int type : {1, 2, 3}) {

@@ -18,7 +18,7 @@ Point point(std::optional<double> goal_lx, std::optional<Vec3> goal_rgb, std::op
 
 const Vec3 kWarm(1.4, 0.9, 0.5);
 
-TEST(PointGoals, HaveARowForEachPointAndSayWhatIsNotAsked) {
+TEST(PointGoals, HaveARowPerPointAndMarkMissingGoals) {
   const std::vector<Point> points = {point(300, {}, {}, 2), point({}, {}, 50, 1), point(0, {}, 0, 1),
                                      point(5, {}, {}, 0)};
   const PointGoals goals = point_goals(points, false);
@@ -36,7 +36,7 @@ TEST(PointGoals, HaveARowForEachPointAndSayWhatIsNotAsked) {
   EXPECT_TRUE(goals.limits(2)) << "darkness is a limit";
 }
 
-TEST(PointGoals, WithColoursOnlyThoseWithAColourCount) {
+TEST(PointGoals, WithColoursCountOnlyPointsWithAColour) {
   const std::vector<Point> points = {point(300, kWarm, {}, 1), point(200, {}, 400, 1), point({}, kWarm, {}, 1)};
   const PointGoals goals = point_goals(points, true);
   ASSERT_EQ(goals.rgb.rows(), 3);
@@ -49,7 +49,7 @@ TEST(PointGoals, WithColoursOnlyThoseWithAColourCount) {
   EXPECT_TRUE(point_goals(points, false).asks(1)) << "in lux alone it counts";
 }
 
-TEST(PointGoals, OfNoPointsAreNone) {
+TEST(PointGoals, OfNoPointsAreEmpty) {
   EXPECT_EQ(point_goals({}, true).goal_lx.size(), 0);
   EXPECT_EQ(point_goals({}, true).rgb.rows(), 0);
 }

@@ -30,7 +30,7 @@ TEST(PointsCsv, ReadsEveryColumnInAnyOrder) {
   EXPECT_EQ(p.max_lx, 400);
 }
 
-TEST(PointsCsv, TakesDefaultsForWhatIsLeftOut) {
+TEST(PointsCsv, UsesDefaultsForMissingValues) {
   const auto table = parse_points_csv("name,x_m,y_m,z_m,nx,ny,nz,goal_lx\na,1,2,3,,,,\n", "p.csv", 10);
   ASSERT_EQ(table.rows.size(), 1u) << listed(table);
   EXPECT_EQ(table.rows[0].point.normal_world, Vec3::UnitZ());
@@ -55,7 +55,7 @@ TEST(PointsCsv, CountsColumnsInCharactersNotBytes) {
   EXPECT_EQ(table.problems[0].column, 9);
 }
 
-TEST(PointsCsv, RefusesABadHeaderWithoutReadingOn) {
+TEST(PointsCsv, RefusesABadHeaderWithoutReadingFurther) {
   const auto unknown = parse_points_csv("name,x,y_m,z_m,y_m\na,1,2,3,4\nb,?\n", "p.csv", 10);
   ASSERT_EQ(unknown.problems.size(), 3u) << listed(unknown);
   EXPECT_NE(unknown.problems[0].what.find("no column x_m"), std::string::npos);
@@ -67,7 +67,7 @@ TEST(PointsCsv, RefusesABadHeaderWithoutReadingOn) {
   EXPECT_EQ(parse_points_csv("# nothing\n\n", "p.csv", 10).problems.size(), 1u);
 }
 
-TEST(PointsCsv, RefusesNamesThatAreNotSoundText) {
+TEST(PointsCsv, RefusesNamesWithInvalidText) {
   for (const std::string name : {"\xff", "a\x01", "\xc0\xaf", "\xed\xa0\x80"}) {
     const auto table = parse_points_csv("name,x_m,y_m,z_m\n" + name + ",1,2,3\n", "p.csv", 10);
     EXPECT_EQ(table.problems.size(), 1u);
@@ -82,7 +82,7 @@ TEST(PointsCsv, RefusesMoreRowsThanAllowed) {
   EXPECT_EQ(parse_points_csv(text, "p.csv", 10).problems.size(), 1u);
 }
 
-TEST(PointsCsv, GivesBackWhatWasWrittenForRandomPoints) {
+TEST(PointsCsv, RoundTripsRandomPoints) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> place_m(-1e6, 1e6), lux(1e-3, 1e6);
   std::string text = "name,x_m,y_m,z_m,goal_lx\n";
@@ -102,7 +102,7 @@ TEST(PointsCsv, GivesBackWhatWasWrittenForRandomPoints) {
   }
 }
 
-TEST(PointsCsv, ReadsColoursOfGoals) {
+TEST(PointsCsv, ReadsGoalColours) {
   const PointsTable table = parse_points_csv(
       "name,x_m,y_m,z_m,goal_lx,goal_y,goal_x,goal_cct_k\na,0,0,0,100,0.4,0.45,\nb,0,0,0,100,,,3000\nc,0,0,0,,,,\n",
       "points.csv", 10);

@@ -36,7 +36,7 @@ std::string blocks(const std::string& language) {
   return out;
 }
 
-TEST(Reference, ItsExamplesMakeOneRig) {
+TEST(Reference, ExamplesTogetherMakeAValidRig) {
   const auto folder = std::filesystem::path(testing::TempDir()) / "luxrig_reference_example";
   std::filesystem::create_directories(folder);
   std::ofstream(folder / "room.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";

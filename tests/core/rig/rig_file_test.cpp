@@ -22,7 +22,7 @@ std::string listed(const std::vector<Problem>& problems) {
   return out;
 }
 
-TEST(RigFile, ReadsTheRoomAsItIsWritten) {
+TEST(RigFile, ReadsARoomAsWritten) {
   const Checked<Rig> rig = load_rig(kRooms);
   ASSERT_TRUE(rig) << listed(rig.error());
   EXPECT_EQ(rig->name, "room");
@@ -91,7 +91,7 @@ std::string fixture(const std::string& name, const std::string& keys) {
          "\n";
 }
 
-TEST(RigFile, ARigThatOnlyHasANameIsARig) {
+TEST(RigFile, AcceptsARigWithOnlyAName) {
   const Checked<Rig> rig = parse("[rig]\nname = \"empty\"\n");
   ASSERT_TRUE(rig) << listed(rig.error());
   ASSERT_EQ(rig->tasks.size(), 1u);
@@ -100,7 +100,7 @@ TEST(RigFile, ARigThatOnlyHasANameIsARig) {
   EXPECT_FALSE(rig->scene.mesh);
 }
 
-TEST(RigFile, SaysWhichFileWasNotFound) {
+TEST(RigFile, NamesAMissingFile) {
   for (const std::filesystem::path& path : {kRooms / "nowhere.toml", kRooms.parent_path(), std::filesystem::path()}) {
     const Checked<Rig> rig = load_rig(path);
     ASSERT_FALSE(rig);
@@ -149,7 +149,7 @@ TEST(RigFile, ReportsProblemsInTheOrderOfTheFile) {
   EXPECT_LT(rig.error()[1].line, rig.error()[2].line);
 }
 
-TEST(RigFile, NotesAGoalAboveItsLimitAndLetsTheLimitWin) {
+TEST(RigFile, NotesAGoalAboveItsLimitAndKeepsTheLimit) {
   const Checked<Rig> rig =
       parse(kSmall + "[[point]]\nname = \"p\"\nposition_m = [0, 0, 0]\ngoal_lx = 60\nmax_lx = 50\n");
   ASSERT_TRUE(rig) << listed(rig.error());
@@ -159,7 +159,7 @@ TEST(RigFile, NotesAGoalAboveItsLimitAndLetsTheLimitWin) {
             "wins; lower the goal if that is not meant");
 }
 
-TEST(RigFile, SendsTwoClashingFixturesToDifferentFreeAddresses) {
+TEST(RigFile, SuggestsDifferentFreeAddressesForClashingFixtures) {
   const std::string two = "address = 1\nslots = [\"dimmer\", \"dimmer-fine\"]";
   const Checked<Rig> rig = parse(kSmall + fixture("a", two) + fixture("b", two) + fixture("c", two));
   ASSERT_FALSE(rig);
@@ -168,7 +168,7 @@ TEST(RigFile, SendsTwoClashingFixturesToDifferentFreeAddresses) {
   EXPECT_EQ(rig.error()[1].mend, "address 5 is free for it");
 }
 
-TEST(RigFile, OnANullBusNobodyNeedsAnAddress) {
+TEST(RigFile, NeedsNoAddressesOnANullBus) {
   const std::string null_bus = "[[bus]]\nname = \"paper\"\ndriver = \"null\"\n";
   const auto on_paper = [](const std::string& name, const std::string& patch) {
     std::string text = fixture(name, patch);
@@ -191,7 +191,7 @@ TEST(RigFile, OnANullBusNobodyNeedsAnAddress) {
   EXPECT_FALSE(parse(kSmall + null_bus + fixture("a", ""))) << "on a real bus one is needed";
 }
 
-TEST(RigFile, SaysWhenAUniverseIsFull) {
+TEST(RigFile, ReportsAFullUniverse) {
   std::string all = "address = 1\nslots = [\"dimmer\"";
   for (int i = 1; i < 512; ++i) all += ", \"unused\"";
   const Checked<Rig> rig = parse(kSmall + fixture("a", all + "]") + fixture("b", "address = 512"));
@@ -208,7 +208,7 @@ TEST(RigFile, LetsUniversesAndBusesShareNumbers) {
   EXPECT_TRUE(rig) << listed(rig.error());
 }
 
-TEST(RigFile, HangsABaseTurnedAsTheReferenceSays) {
+TEST(RigFile, TurnsABaseAsTheReferenceStates) {
   // Yaw 90° turns the base's y (away) from the world's +y to -x; the beam at tilt 90° then follows it.
   const Checked<Rig> yawed = parse(kSmall + fixture("a", "address = 1\nmount_deg = [90, 0, 0]\ntilt_deg = 90"));
   ASSERT_TRUE(yawed) << listed(yawed.error());
@@ -223,14 +223,14 @@ TEST(RigFile, HangsABaseTurnedAsTheReferenceSays) {
   EXPECT_LT((rolled->fixtures[0].world_from_lamp().direction(-Vec3::UnitZ()) + Vec3::UnitX()).norm(), 1e-12);
 }
 
-TEST(RigFile, AStandingHeadReachesWhatAHangingOneCannot) {
+TEST(RigFile, AStandingHeadReachesAimsThatAHangingOneCannot) {
   const std::string mover = "address = 1\nslots = [\"pan\", \"tilt\", \"dimmer\"]\naim_m = [0.1, 0, 9]";
   EXPECT_FALSE(parse(kSmall + fixture("a", mover)));
   const Checked<Rig> rig = parse(kSmall + fixture("a", mover + "\nmount_deg = [0, 180, 0]"));
   EXPECT_TRUE(rig) << listed(rig.error());
 }
 
-TEST(RigFile, ReadsDefaultSpeedsOnlyIntoFixturesThatMove) {
+TEST(RigFile, AppliesDefaultSpeedsOnlyToMovingFixtures) {
   const Checked<Rig> rig = parse(kSmall + fixture("a", "address = 1") +
                                  fixture("b", "address = 2\nslots = [\"pan\", \"tilt\", \"dimmer\"]"));
   ASSERT_TRUE(rig) << listed(rig.error());
@@ -248,7 +248,7 @@ std::string text_of_lamp_on(const std::string& map, int channel) {
          "\n";
 }
 
-TEST(RigFile, ALampOnARelayIsOnOrOff) {
+TEST(RigFile, ALampOnARelayIsSwitched) {
   const Checked<Rig> relay = parse(text_of_lamp_on("waveshare-modbus-rtu-relay-d.toml", 3));
   ASSERT_TRUE(relay) << listed(relay.error());
   EXPECT_TRUE(relay->fixtures.at(0).switched);
@@ -267,7 +267,7 @@ TEST(RigFile, ALampOnARelayIsOnOrOff) {
   EXPECT_TRUE(said->fixtures.at(0).switched);
 }
 
-TEST(RigFile, SurvivesEveryTruncationAndManyChangedBytes) {
+TEST(RigFile, SurvivesTruncationsAndChangedBytes) {
   std::ifstream in(kRooms / "rig.toml", std::ios::binary);
   const std::string room((std::istreambuf_iterator<char>(in)), {});
   ASSERT_GT(room.size(), 1000u);
@@ -332,7 +332,7 @@ double seconds_to_load(const std::string& text) {
   return min_s;
 }
 
-TEST(RigFile, LoadsFiveHundredFixturesAndTwentyThousandPointsInTimeThatGrowsAsTheFile) {
+TEST(RigFile, LoadsLargeFilesInLessThanQuadraticTime) {
   const std::string large = text_of_large_rig(512, 20000);
   const Checked<Rig> rig = parse(large);
   ASSERT_TRUE(rig) << listed(rig.error());

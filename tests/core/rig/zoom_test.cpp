@@ -55,7 +55,7 @@ TEST(Zoom, KeepsTheFluxAndTheRatioOfFieldToBeam) {
   EXPECT_EQ(intensity_at_beam(spot, spot.beam_angle_rad), spot.intensity);
 }
 
-TEST(Zoom, IsOfFixturesWithASlotForItOnly) {
+TEST(Zoom, IsLimitedToFixturesWithASlotForIt) {
   const Checked<Rig> rig = parse_rig(kRig, "rig.toml", ".");
   ASSERT_TRUE(rig) << rig.error().front().text();
   ASSERT_EQ(rig->fixtures.size(), 3u);
@@ -71,7 +71,7 @@ TEST(Zoom, IsOfFixturesWithASlotForItOnly) {
   EXPECT_EQ(rig->fixtures[2].joints.beam_rad, 0);
 }
 
-TEST(Housing, IsNamedAsTheRigFileNamesIt) {
+TEST(Housing, HasTheNameOfTheRigFile) {
   const Checked<Rig> rig = parse_rig(kRig, "rig.toml", ".");
   ASSERT_TRUE(rig) << rig.error().front().text();
   EXPECT_EQ(housing_name(*rig, 0), "head");

@@ -36,7 +36,7 @@ std::vector<Pane> square(double z_m, double half_m, std::uint32_t object, double
   return {triangle(a, b, c, transmittance, object), triangle(a, c, d, transmittance, object)};
 }
 
-TEST(Panes, LetThroughWhatTheyAreStatedTo) {
+TEST(Panes, TransmitTheirStatedShare) {
   for (const double stated : {0.01, 0.3, 0.8, 0.9, 0.9183, 0.95, 0.99, 1.0}) {
     EXPECT_NEAR(pane_transmittance(stated, 1), stated, 1e-12);
     EXPECT_EQ(pane_transmittance(stated, 0), 0);
@@ -68,7 +68,7 @@ TEST(Panes, FollowFresnelWithAllInternalReflections) {
   }
 }
 
-TEST(Panes, CountOncePerPaneAlsoThroughTheirDiagonal) {
+TEST(Panes, CountOncePerPaneEvenOnTheirDiagonal) {
   const Panes one(square(1, 2, 0));
   for (const double x : {0.0, 0.3, -1.7, 1.999}) {
     EXPECT_NEAR(one.transmittance({x, x, 0}, {x, x, 3}, 0), 0.9, 1e-12) << "on the diagonal at " << x;
@@ -83,7 +83,7 @@ TEST(Panes, CountOncePerPaneAlsoThroughTheirDiagonal) {
   EXPECT_NEAR(Panes(two).transmittance({0.1, 0, 0}, {0.1, 0, 3}, 0), 0.45, 1e-12) << "two objects are two panes";
 }
 
-TEST(Panes, OfACaseAreMetAsOftenAsALineCrossesIt) {
+TEST(Panes, OfABoxCountEveryCrossingOfALine) {
   // The six faces of a box about the origin; the number of crossings is counted from its planes.
   std::vector<Pane> box;
   const Vec3 half_m(0.5, 0.4, 0.3);
@@ -124,7 +124,7 @@ TEST(Panes, OfACaseAreMetAsOftenAsALineCrossesIt) {
   for (const int count : crossed) EXPECT_GT(count, 100);
 }
 
-TEST(Panes, TakeDegenerateAndEndlessInput) {
+TEST(Panes, TolerateDegenerateAndInfiniteInput) {
   const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
   std::vector<Pane> odd = square(1, 2, 0);
   odd.push_back(triangle({0, 0, 2}, {0, 0, 2}, {1, 0, 2}));

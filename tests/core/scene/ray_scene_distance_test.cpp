@@ -39,14 +39,14 @@ TEST(NearestSurface, OfABoxIsItsNearestWall) {
   }
 }
 
-TEST(NearestSurface, OutsideIsACornerOrAnEdgeToo) {
+TEST(NearestSurface, FromOutsideCanBeACornerOrAnEdge) {
   const RayScene rays(empty_box(Vec3::Zero()));
   EXPECT_NEAR(rays.nearest_surface(Vec3(-3, -4, -12), kAnyDistance_m)->distance_m, 13, 1e-6);
   EXPECT_NEAR(rays.nearest_surface(Vec3(2, -3, 6.5), kAnyDistance_m)->distance_m, 5, 1e-6);
   EXPECT_EQ(rays.nearest_surface(Vec3(1, 1, 0), kAnyDistance_m)->distance_m, 0);
 }
 
-TEST(NearestSurface, IsNoneBeyondTheBoundOrWithoutTriangles) {
+TEST(NearestSurface, IsAbsentBeyondTheBoundOrWithoutTriangles) {
   const RayScene rays(empty_box(Vec3::Zero()));
   EXPECT_FALSE(rays.nearest_surface(Vec3(2, 1.5, 1.2), 1.1));
   EXPECT_TRUE(rays.nearest_surface(Vec3(2, 1.5, 1.2), 1.21));
@@ -67,7 +67,7 @@ double to_triangle_m(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c)
   return inside ? (p - foot).norm() : nearest_m;
 }
 
-TEST(NearestSurface, OfManyTrianglesIsTheNearestOneThatIsMarked) {
+TEST(NearestSurface, OfManyTrianglesIsTheNearestMarkedOne) {
   std::mt19937_64 random(2);
   std::uniform_real_distribution<float> side(-1, 1);
   Scene scene;

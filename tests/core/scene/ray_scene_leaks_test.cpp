@@ -178,7 +178,7 @@ TEST(RayLeaks, ALampInAnEmptyBoxReachesEveryPointOfItsWalls) {
   EXPECT_EQ(shaded_many, 0);
 }
 
-TEST(RayLeaks, ASheetCloseToALampOrAReceiverStopsItsLight) {
+TEST(RayLeaks, ASheetCloseToALampOrAReceiverBlocksItsLight) {
   // A sheet 4 e or more before the lamp, or 8 e off the receiver's surface, at any slant. When shadow rays just stopped
   // short, a third of a millimetre was overlooked.
   Random random(4);
@@ -214,7 +214,7 @@ TEST(RayLeaks, ASheetCloseToALampOrAReceiverStopsItsLight) {
   }
 }
 
-TEST(RayLeaks, OneByOneAndManyAtOnceGiveTheSameAnswers) {
+TEST(RayLeaks, SingleAndBatchedRaysGiveTheSameAnswers) {
   Random random(5);
   int compared = 0, stopped = 0;
   for (int b = 0; b < 200; ++b) {
@@ -245,7 +245,7 @@ TEST(RayLeaks, OneByOneAndManyAtOnceGiveTheSameAnswers) {
   EXPECT_LT(stopped, compared * 9 / 10);
 }
 
-TEST(RayLeaks, NothingComesThroughAWallOfFifteenCentimetres) {
+TEST(RayLeaks, NoLightPassesAWallOfFifteenCentimetres) {
   Random random(6);
   int configurations = 0, leaks = 0;
   for (int b = 0; b < 200; ++b) {

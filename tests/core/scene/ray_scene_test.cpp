@@ -88,7 +88,7 @@ TEST_P(AtEverySize, NoRayLeavesAClosedBox) {
 
 // Embree rounds, so a ray to the exact corner of three sides may pass between them: 1 in 10 000 of these does, as the
 // header states. Other rays never do (above).
-TEST_P(AtEverySize, RaysAimedAtEdgesAndCornersHardlyEverSlipThrough) {
+TEST_P(AtEverySize, RaysAtEdgesAndCornersRarelySlipThrough) {
   const auto& [name, half_m, origin] = GetParam();
   const RayScene rays(box(half_m, 4, origin));
   Random random(12);
@@ -132,7 +132,7 @@ TEST_P(AtEverySize, PathsThatBounceFromHitToHitStayInside) {
   }
 }
 
-TEST_P(AtEverySize, NoSurfaceShadesItselfNorALampThatLiesInAnother) {
+TEST_P(AtEverySize, NoSurfaceShadesItselfOrALampInAnotherSurface) {
   const auto& [name, half_m, origin] = GetParam();
   const RayScene rays(box(half_m, 3, origin));
   Random random(14);
@@ -193,7 +193,7 @@ Scene soup(double size_m, std::size_t count, unsigned seed) {
   return with_materials(scene);
 }
 
-TEST_P(AtEverySize, SeesWhatBruteForceInDoublePrecisionSees) {
+TEST_P(AtEverySize, MatchesBruteForceInDoublePrecision) {
   const auto& [name, half_m, origin] = GetParam();
   Scene scene = soup(half_m.x(), 60, 15);
   scene.origin_world_m = origin;
@@ -237,7 +237,7 @@ TEST_P(AtEverySize, SeesWhatBruteForceInDoublePrecisionSees) {
   EXPECT_GT(compared, 3500);
 }
 
-TEST(RayScene, StartsInCornersStayIn) {
+TEST(RayScene, RaysFromCornersStayInside) {
   const Vec3 half_m(3, 2.5, 1.5);
   const RayScene rays(box(half_m, 1, Vec3::Zero()));
   Random random(17);
@@ -252,7 +252,7 @@ TEST(RayScene, StartsInCornersStayIn) {
   }
 }
 
-TEST(RayScene, NothingIsInTheWayInAnEmptyScene) {
+TEST(RayScene, AnEmptySceneBlocksNothing) {
   const RayScene rays((Scene()));
   EXPECT_FALSE(rays.nearest(Vec3::Zero(), Vec3::UnitX(), Vec3::Zero()).has_value());
   EXPECT_FALSE(rays.occluded(Vec3::Zero(), Vec3::UnitX(), Vec3(1, 2, 3)));
@@ -267,7 +267,7 @@ TEST(RayScene, BoundsAreThoseOfTheTrianglesInWorldCoordinates) {
   EXPECT_EQ(bounds.max(), Vec3(101, 202, 303));
 }
 
-TEST(RayScene, BothSidesOfATriangleStopLight) {
+TEST(RayScene, BothSidesOfATriangleBlockLight) {
   Scene scene;
   scene.vertices_m = {{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}};
   scene.triangles = {{0, 1, 2}};
@@ -290,7 +290,7 @@ TEST(RayScene, ASegmentOfNoLengthIsFree) {
   EXPECT_FALSE(rays.occluded(Vec3(1, 0, 0), -Vec3::UnitX(), Vec3(1 - 1e-6, 0, 0)));
 }
 
-TEST(RayScene, TrianglesWithoutAreaStopNothing) {
+TEST(RayScene, ZeroAreaTrianglesBlockNothing) {
   Scene scene;
   scene.vertices_m = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 0, 0}};
   scene.triangles = {{0, 1, 2}, {0, 0, 3}};
@@ -317,7 +317,7 @@ TEST(RayScene, AnswersTheSameFromManyThreads) {
   for (const auto& one : seen) EXPECT_EQ(one, expected);
 }
 
-TEST(RaySceneDeath, StopsACallerWithABrokenSceneOrDirection) {
+TEST(RaySceneDeath, AbortsOnABrokenSceneOrDirection) {
   Scene scene = box(Vec3(1, 1, 1), 1, Vec3::Zero());
   const RayScene rays(scene);
   EXPECT_DEATH((void)rays.nearest(Vec3::Zero(), Vec3(0, 0, 2), Vec3::Zero()), "direction");

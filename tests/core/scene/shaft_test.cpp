@@ -24,7 +24,7 @@ Scene soup(double size_m, std::size_t count, Random& random) {
   return scene;
 }
 
-TEST(Shaft, WhereItIsClearNoRayIsStoppedAndWhereItIsBlockedNoneGetsThrough) {
+TEST(Shaft, ClearShaftsStopNoRayAndBlockedOnesStopAll) {
   Random random(1);
   int clear = 0, blocked = 0, unknown = 0, missed_clear = 0;
   for (int i = 0; i < 2'000; ++i) {
@@ -112,7 +112,7 @@ TEST(Shaft, TwoTrianglesThatShareAnEdgeBlockOnlyWhatLiesBehindBoth) {
   EXPECT_FALSE(hull_lies_behind(from, past, bow, of_past));
 }
 
-TEST(Shaft, WhatTouchesItsEndsDoesNotStandInIt) {
+TEST(Shaft, SurfacesAtItsEndsDoNotBlockIt) {
   // Floor under the point, ceiling flush with the quadrilateral, wall through the point and an edge.
   for (const double size_m : {1e-3, 1.0, 1e4}) {
     Scene scene;
@@ -137,7 +137,7 @@ TEST(Shaft, WhatTouchesItsEndsDoesNotStandInIt) {
   }
 }
 
-TEST(Shaft, AnEmptySceneIsClearAndAPointWithinAHullProvesNothing) {
+TEST(Shaft, AnEmptySceneIsClearAndAPointInsideAHullIsUndecided) {
   const RayScene empty((Scene()));
   const std::array<Vec3, 8> around = {Vec3(-1, -1, -1), Vec3(1, -1, -1), Vec3(1, 1, -1), Vec3(-1, 1, -1),
                                       Vec3(-1, -1, 1),  Vec3(1, -1, 1),  Vec3(1, 1, 1),  Vec3(-1, 1, 1)};

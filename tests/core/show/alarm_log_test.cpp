@@ -7,7 +7,7 @@
 namespace luxrig {
 namespace {
 
-TEST(AlarmLog, AFailureThatLastsTwoMinutesAndCountsIsOneLine) {
+TEST(AlarmLog, AFailureWithAChangingCountIsOneLine) {
   AlarmLog log;
   std::size_t lines = 0;
   for (int step = 0; step < 1250; ++step) {
@@ -19,7 +19,7 @@ TEST(AlarmLog, AFailureThatLastsTwoMinutesAndCountsIsOneLine) {
   EXPECT_EQ(lines, 1u);
 }
 
-TEST(AlarmLog, SaysAFailureThatLastsAgainEveryTenMinutes) {
+TEST(AlarmLog, RepeatsALastingFailureEveryTenMinutes) {
   AlarmLog log;
   const std::vector<Alarm> alarms = {{true, "track", "bus \"track\" is gone", at(0)}};
   std::size_t lines = 0;
@@ -27,7 +27,7 @@ TEST(AlarmLog, SaysAFailureThatLastsAgainEveryTenMinutes) {
   EXPECT_EQ(lines, 6u);
 }
 
-TEST(AlarmLog, SaysEachOfTwoCausesAndANewOneOfTheSameDeviceAMinuteLater) {
+TEST(AlarmLog, LogsTwoCausesAndANewFailureOfADeviceAMinuteLater) {
   AlarmLog log;
   const Alarm track{true, "track", "bus \"track\" is gone", at(0)}, meter{true, "meter", "not heard", at(0)};
   EXPECT_EQ(log.to_say(std::vector<Alarm>{track, meter}, at(0)).size(), 2u);
@@ -35,7 +35,7 @@ TEST(AlarmLog, SaysEachOfTwoCausesAndANewOneOfTheSameDeviceAMinuteLater) {
   EXPECT_EQ(log.to_say(std::vector<Alarm>{later}, at(70)).size(), 1u);
 }
 
-TEST(AlarmLog, SaysTwoPointsThatDifferInANumberOfTheirNamesOnly) {
+TEST(AlarmLog, DistinguishesPointsWhoseNamesDifferOnlyInANumber) {
   AlarmLog log;
   const std::vector<Alarm> alarms = {{true, "", "point \"work-1\" may have 51.2 lx", at(0)},
                                      {true, "", "point \"work-2\" may have 51.2 lx", at(0)}};
@@ -43,7 +43,7 @@ TEST(AlarmLog, SaysTwoPointsThatDifferInANumberOfTheirNamesOnly) {
   EXPECT_FALSE(is_same_alarm(alarms[0], alarms[1]));
 }
 
-TEST(AlarmLog, SaysADeviceThatComesAndGoesTwiceASecondOnceAMinute) {
+TEST(AlarmLog, LogsAFlappingDeviceOnceAMinute) {
   AlarmLog log;
   std::size_t lines = 0;
   for (int half = 0; half < 240; ++half) {

@@ -65,7 +65,7 @@ struct Shared {
 constexpr DeskPresence kUnknown = DeskPresence::unknown, kAbsent = DeskPresence::absent,
                        kPresent = DeskPresence::present;
 
-TEST(DeskFollower, MergesTheBrighterAndGivesAMovementToWhoeverMadeTheLast) {
+TEST(DeskFollower, MergesByTheBrighterLevelAndTheLatestMovement) {
   Shared shared({DeskMode::merge, HandBack::at_once}, 0.4);
   EXPECT_FALSE(shared.silent());  // Luxrig has the light while it listens
   EXPECT_DOUBLE_EQ(shared.level(0), 0.4);
@@ -80,7 +80,7 @@ TEST(DeskFollower, MergesTheBrighterAndGivesAMovementToWhoeverMadeTheLast) {
   EXPECT_EQ(shared.pose(3), (Joints{1, 1}));
 }
 
-TEST(DeskFollower, TakesOverFromLuxrigWhileTheDeskIsThereSecondBySecond) {
+TEST(DeskFollower, FollowsThePhasesOfATakeoverInTime) {
   Shared shared({DeskMode::takeover, HandBack::fade}, 0.2, 4);
   EXPECT_TRUE(shared.silent());  // a desk may have the light: not known yet
   shared.hear(0, kUnknown, 0);
@@ -103,7 +103,7 @@ TEST(DeskFollower, TakesOverFromLuxrigWhileTheDeskIsThereSecondBySecond) {
   for (int s = 0; s < 6; ++s) EXPECT_NEAR(shared.level(20 + s), back[s], 1e-12) << s;
 }
 
-TEST(DeskFollower, StandsByInSilenceAndTakesTheLightFromTheLastValuesSeen) {
+TEST(DeskFollower, StandsBySilentlyAndTakesOverFromTheDesksLastValues) {
   Shared shared({DeskMode::standby, HandBack::fade}, 0.2, 4);
   shared.hear(0, kUnknown, 0);
   EXPECT_TRUE(shared.silent());
@@ -127,7 +127,7 @@ TEST(DeskFollower, StandsByInSilenceAndTakesTheLightFromTheLastValuesSeen) {
   EXPECT_TRUE(shared.silent());
 }
 
-TEST(DeskFollower, HandsBackAtOnceWhenTheRuleSaysSo) {
+TEST(DeskFollower, HandsBackAtOnceUnderThatRule) {
   Shared shared({DeskMode::standby, HandBack::at_once});
   shared.hear(0, kAbsent, 0);
   EXPECT_FALSE(shared.silent());
@@ -139,7 +139,7 @@ TEST(DeskFollower, HandsBackAtOnceWhenTheRuleSaysSo) {
   EXPECT_DOUBLE_EQ(shared.level(5), 0.9);
 }
 
-TEST(DeskFollower, HandsBackOnlyWhenAskedWhenTheRuleSaysSo) {
+TEST(DeskFollower, HandsBackOnlyWhenAskedUnderThatRule) {
   Shared shared({DeskMode::takeover, HandBack::when_asked}, 0.2, 4);
   shared.ask(0);  // no desk there
   shared.hear(1, kPresent, 0.8);
@@ -156,7 +156,7 @@ TEST(DeskFollower, HandsBackOnlyWhenAskedWhenTheRuleSaysSo) {
   EXPECT_NEAR(shared.level(44), 1.0, 1e-12);
 }
 
-TEST(DeskFollower, NeverJumpsWhateverHappensInTheMiddleOfAFade) {
+TEST(DeskFollower, NeverJumpsWhenADeskComesAndGoesDuringFades) {
   Shared shared({DeskMode::takeover, HandBack::fade}, 0.1, 4);
   shared.hear(0, kPresent, 1.0);
   double last = shared.level(0);
@@ -171,7 +171,7 @@ TEST(DeskFollower, NeverJumpsWhateverHappensInTheMiddleOfAFade) {
   }
 }
 
-TEST(DeskFollower, LeavesFixturesToLuxrigThatTheDeskHasNoSayIn) {
+TEST(DeskFollower, LeavesFixturesToLuxrigThatTheDeskDoesNotControl) {
   Shared shared({DeskMode::takeover, HandBack::at_once}, 0.3);
   DeskFrame frame{kPresent, {{7, 1.0, std::nullopt}}, "desk"};
   const std::vector<double> level = {0.3};
@@ -180,7 +180,7 @@ TEST(DeskFollower, LeavesFixturesToLuxrigThatTheDeskHasNoSayIn) {
   EXPECT_DOUBLE_EQ(shared.level(1), 0.3);
 }
 
-TEST(DeskFollower, TakesADriveThatIsNoneForDark) {
+TEST(DeskFollower, ClampsInvalidDrivesAndTreatsNaNAsDark) {
   Shared shared({DeskMode::takeover, HandBack::at_once}, 0.3);
   shared.hear(0, kPresent, std::numeric_limits<double>::quiet_NaN());
   EXPECT_DOUBLE_EQ(shared.level(0), 0);
@@ -190,14 +190,14 @@ TEST(DeskFollower, TakesADriveThatIsNoneForDark) {
   EXPECT_DOUBLE_EQ(shared.level(2), 0);
 }
 
-TEST(DeskFollower, ABlackoutLiesOverTheDeskToo) {
+TEST(DeskFollower, ABlackoutOverridesTheDesk) {
   Shared shared({DeskMode::merge, HandBack::at_once});
   shared.hear(0, kPresent, 1.0);
   shared.program.blackout = true;
   EXPECT_DOUBLE_EQ(shared.level(1), 0);
 }
 
-TEST(OutputProgram, LetsLimitsForAnyLevelsGoByFadeOnceNoDeskHasASay) {
+TEST(OutputProgram, ReleasesLimitsForAnyLevelsByFadeWhenNoDeskIsInControl) {
   // A meter allows Luxrig 0.8 here; bounds alone would allow 0.5.
   Shared shared({DeskMode::takeover, HandBack::at_once}, 0.8, 2);
   shared.program.worst_lux_per_level = Eigen::MatrixXd::Constant(1, 1, 60);
@@ -217,7 +217,7 @@ TEST(OutputProgram, LetsLimitsForAnyLevelsGoByFadeOnceNoDeskHasASay) {
   EXPECT_NEAR(shared.level(14.01), 0.8, 1e-9);
 }
 
-TEST(OutputProgram, KeepsADeskFromLightingHeadsThatAreOnTheirWay) {
+TEST(OutputProgram, KeepsADeskFromLightingMovingHeads) {
   Shared shared({DeskMode::takeover, HandBack::at_once}, 0.0);
   shared.program.heads_arrive = at(5);
   shared.program.heads_guarded = {1};

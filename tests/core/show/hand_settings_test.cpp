@@ -29,7 +29,7 @@ class HandSettingsTest : public ::testing::Test {
   HandSettings hands{rig};
 };
 
-TEST_F(HandSettingsTest, ReleaseCountsOnlyThoseThatWereSet) {
+TEST_F(HandSettingsTest, ReleaseCountsOnlyExistingSettings) {
   set(level(1, 0.4));
   set(goal(0, 150));
   EXPECT_EQ(hands.all().size(), 2u);
@@ -39,7 +39,7 @@ TEST_F(HandSettingsTest, ReleaseCountsOnlyThoseThatWereSet) {
   EXPECT_TRUE(hands.all().empty());
 }
 
-TEST_F(HandSettingsTest, ASettingIsOverAtItsTimeAndNotBefore) {
+TEST_F(HandSettingsTest, ASettingExpiresExactlyAtItsTime) {
   ByHand timed = level(0, 0.5);
   timed.until = kEnd;
   set(timed);
@@ -49,7 +49,7 @@ TEST_F(HandSettingsTest, ASettingIsOverAtItsTimeAndNotBefore) {
   EXPECT_TRUE(hands.over(kEnd).points.empty()) << "a setting without an end stays";
 }
 
-TEST_F(HandSettingsTest, APlanEndsOnlySettingsOfThePlanBefore) {
+TEST_F(HandSettingsTest, APlanEndsOnlySettingsOfThePreviousPlan) {
   Look look;
   look.solved_levels = {std::nullopt, 0.9};
   EXPECT_FALSE(take_plan({0.2, 0.3}, look));
@@ -70,7 +70,7 @@ TEST_F(HandSettingsTest, APlanEndsOnlySettingsOfThePlanBefore) {
   EXPECT_TRUE(take_plan({0.1, 0.1})) << "so is a goal";
 }
 
-TEST_F(HandSettingsTest, GoalsStayWithTheirPointByName) {
+TEST_F(HandSettingsTest, GoalsFollowTheirPointByName) {
   set(goal(0, 120));
   set(goal(1, 60));
   std::vector<Point> after(3);

@@ -30,7 +30,7 @@ bool holds(const JointBox& box, const Joints& at) {
          at.tilt_rad >= box.least.tilt_rad - kRounding && at.tilt_rad <= box.most.tilt_rad + kRounding;
 }
 
-TEST(HeadWhereabouts, IsAnywhereAtFirstAndThereWhenItMustHaveArrived) {
+TEST(HeadWhereabouts, StartsUnknownAndSettlesOnceTheLongestMoveIsOver) {
   HeadWhereabouts where(some_head());
   EXPECT_EQ(where.box().least.pan_rad, -4);
   EXPECT_EQ(where.box().most.tilt_rad, 2);
@@ -44,7 +44,7 @@ TEST(HeadWhereabouts, IsAnywhereAtFirstAndThereWhenItMustHaveArrived) {
   EXPECT_NEAR(arrived_s, 3.0, 0.03);
 }
 
-TEST(HeadWhereabouts, HeadsOfEverySpeedAndDelayAreWithin) {
+TEST(HeadWhereabouts, ContainsHeadsOfEverySpeedAndDelay) {
   Random random(11);
   double narrowest = 100;
   for (int run = 0; run < 60; ++run) {
@@ -77,7 +77,7 @@ TEST(HeadWhereabouts, HeadsOfEverySpeedAndDelayAreWithin) {
   EXPECT_EQ(narrowest, 0);
 }
 
-TEST(HeadWhereabouts, OneThatFindsItsZeroObeysThereafter) {
+TEST(HeadWhereabouts, AHeadThatHomesIsUnknownUntilItsResetTimeIsOver) {
   Fixture head = some_head();
   head.reset_s = 20;
   HeadWhereabouts where(head);
@@ -87,7 +87,7 @@ TEST(HeadWhereabouts, OneThatFindsItsZeroObeysThereafter) {
   EXPECT_EQ(where.box(), JointBox::at({}));
 }
 
-TEST(HeadWhereabouts, AxesAreOnTheLineUntilTheyHaveArrived) {
+TEST(HeadWhereabouts, AxesStayOnTheirLineUntilTheyArrive) {
   Fixture head = some_head();
   head.axes.emplace();
   head.axes->pan.acceleration_rad_s2 = 4;
@@ -114,7 +114,7 @@ TEST(HeadWhereabouts, AxesAreOnTheLineUntilTheyHaveArrived) {
   EXPECT_EQ(where.box(), (JointBox{{0, 0, 0}, {2, 1, 0}}));
 }
 
-TEST(HeadWhereabouts, WhatSomebodyElseTurnsIsAnywhere) {
+TEST(HeadWhereabouts, AHeadTurnedBySomethingElseIsUnknown) {
   HeadWhereabouts where(some_head());
   for (int i = 0; i <= 400; ++i) where.step(at(0.02 * i), JointBox::at({}), true);
   ASSERT_EQ(where.box(), JointBox::at({}));

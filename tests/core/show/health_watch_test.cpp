@@ -43,7 +43,7 @@ void step_until(HealthWatch& watch, double from_s, double to_s) {
   for (int i = 1; i <= steps; ++i) watch.step(at(from_s + 0.1 * i));
 }
 
-TEST(HealthWatch, IsContentWhileEveryMeterSpeaksAndNothingIsFaulted) {
+TEST(HealthWatch, RaisesNoAlarmWhileAllMetersAndDevicesAreHealthy) {
   HealthWatch watch(small_rig());
   for (double t = 0; t < 10; t += 0.1) {
     hear_both(watch, t);
@@ -54,7 +54,7 @@ TEST(HealthWatch, IsContentWhileEveryMeterSpeaksAndNothingIsFaulted) {
   }
 }
 
-TEST(HealthWatch, NamesAsCauseWhatIsLostAndNotWhatElseIsWrong) {
+TEST(HealthWatch, NamesLostDevicesAsTheCauseNotOtherWarnings) {
   HealthWatch watch(small_rig());
   EXPECT_EQ(watch.cause(true), "");
   hear_both(watch, 0);
@@ -73,7 +73,7 @@ TEST(HealthWatch, NamesAsCauseWhatIsLostAndNotWhatElseIsWrong) {
   EXPECT_NE(watch.cause(true).find("meter-1"), std::string::npos) << "a warning is no cause";
 }
 
-TEST(HealthWatch, WarnsOfADimmerThatObeysAndSaysThatSomethingIsWrongAndLeavesTheLightAlone) {
+TEST(HealthWatch, WarnsOfAWorkingDimmerThatReportsAnErrorWithoutLosingLight) {
   HealthWatch watch(small_rig());
   Health failing;
   failing.device = "right";
@@ -95,7 +95,7 @@ TEST(HealthWatch, WarnsOfADimmerThatObeysAndSaysThatSomethingIsWrongAndLeavesThe
   EXPECT_TRUE(watch.alarms().empty());
 }
 
-TEST(HealthWatch, GivesMetersTheirTimeOfSilenceFromTheFirstStep) {
+TEST(HealthWatch, CountsAMetersSilenceFromTheFirstStep) {
   HealthWatch watch(small_rig());
   watch.step(at(1000));
   EXPECT_FALSE(watch.any_meter_lost());
@@ -105,7 +105,7 @@ TEST(HealthWatch, GivesMetersTheirTimeOfSilenceFromTheFirstStep) {
   EXPECT_TRUE(watch.meter_lost(0));
 }
 
-TEST(HealthWatch, LosesAMeterThatFallsSilentWithinTwoSecondsAndTakesItBack) {
+TEST(HealthWatch, LosesASilentMeterWithinTwoSecondsAndRecoversIt) {
   HealthWatch watch(small_rig());
   hear_both(watch, 10);
   watch.step(at(10));
@@ -128,7 +128,7 @@ TEST(HealthWatch, LosesAMeterThatFallsSilentWithinTwoSecondsAndTakesItBack) {
   EXPECT_TRUE(watch.alarms().empty());
 }
 
-TEST(HealthWatch, SaysWhenAMeterSendsNoNumbers) {
+TEST(HealthWatch, ReportsAMeterThatSendsNoNumbers) {
   HealthWatch watch(small_rig());
   hear_both(watch, 10);
   watch.step(at(10));
@@ -140,7 +140,7 @@ TEST(HealthWatch, SaysWhenAMeterSendsNoNumbers) {
   EXPECT_NE(watch.alarms()[0].text.find("no usable number"), std::string::npos);
 }
 
-TEST(HealthWatch, LosesAMeterThatCannotBeBelievedUntilItCan) {
+TEST(HealthWatch, LosesAnImplausibleMeterUntilItIsPlausible) {
   HealthWatch watch(small_rig());
   hear_both(watch, 1);
   watch.judged(0, at(1), "shows 900 lx, the model allows 40 to 60 lx");
@@ -153,7 +153,7 @@ TEST(HealthWatch, LosesAMeterThatCannotBeBelievedUntilItCan) {
   EXPECT_FALSE(watch.meter_lost(0));
 }
 
-TEST(HealthWatch, OneLateAnswerIsNoLossAndOnesInARowAre) {
+TEST(HealthWatch, OneLateAnswerIsNoLossButSeveralInARowAre) {
   HealthWatch watch(small_rig());
   const HealthWatch::Patience patience{std::chrono::milliseconds(1200), std::chrono::milliseconds(1200)};
   const auto step_with = [&](double from_s, double to_s, bool failing) {
@@ -177,7 +177,7 @@ TEST(HealthWatch, OneLateAnswerIsNoLossAndOnesInARowAre) {
   EXPECT_TRUE(watch.meter_lost(1));
 }
 
-TEST(HealthWatch, WhatFailsAgainAndAgainIsGoodOnlyAfterAGrowingRowOfGoodAnswers) {
+TEST(HealthWatch, ARepeatedlyFailingDeviceNeedsLongerAndLongerRecovery) {
   HealthWatch watch(small_rig());
   double t = 10, row_before_s = -1;
   for (int failure = 0; failure < 7; ++failure) {
@@ -209,7 +209,7 @@ TEST(HealthWatch, WhatFailsAgainAndAgainIsGoodOnlyAfterAGrowingRowOfGoodAnswers)
   }
 }
 
-TEST(HealthWatch, TellsLossOfLightFromLossOfMeters) {
+TEST(HealthWatch, DistinguishesLossOfLightFromLossOfMeters) {
   const struct {
     const char* device;
     bool light, meter;
@@ -241,7 +241,7 @@ TEST(HealthWatch, TellsLossOfLightFromLossOfMeters) {
   }
 }
 
-TEST(HealthWatch, ANodeOfABusThatIsGoneConcernsThatBusAlone) {
+TEST(HealthWatch, ALostNodeConcernsOnlyItsBus) {
   Rig rig = small_rig();
   rig.buses.push_back({});
   rig.buses[2].name = "line";
@@ -266,7 +266,7 @@ TEST(HealthWatch, ANodeOfABusThatIsGoneConcernsThatBusAlone) {
   EXPECT_EQ(watch.alarms()[0].device, "track");
 }
 
-TEST(HealthWatch, WhatIsBypassedLosesNoLightAndRaisesNoAlarm) {
+TEST(HealthWatch, ABypassedDeviceLosesNoLightAndRaisesNoAlarm) {
   HealthWatch watch(small_rig());
   hear_both(watch, 1);
   const Health report[] = {faulted("left", 1), faulted("meter-2", 1)};
@@ -287,7 +287,7 @@ TEST(HealthWatch, WhatIsBypassedLosesNoLightAndRaisesNoAlarm) {
   EXPECT_TRUE(watch.all_lost()) << "of those in use none is left";
 }
 
-TEST(HealthWatch, SaysOnceThatABusIsGoneNotForEachMeterOnIt) {
+TEST(HealthWatch, ReportsALostBusOnceNotForEachMeter) {
   HealthWatch watch(small_rig());
   watch.step(at(0));
   const Health report[] = {faulted("field", 1), faulted("meter-1", 1), faulted("meter-2", 1)};
@@ -299,7 +299,7 @@ TEST(HealthWatch, SaysOnceThatABusIsGoneNotForEachMeterOnIt) {
   EXPECT_EQ(watch.alarms()[0].device, "field");
 }
 
-TEST(HealthWatch, OurOwnLatenessIsNoSilenceOfAMeter) {
+TEST(HealthWatch, OwnLatenessDoesNotCountAsMeterSilence) {
   HealthWatch watch(small_rig());
   hear_both(watch, 10);
   watch.step(at(10));
@@ -312,7 +312,7 @@ TEST(HealthWatch, OurOwnLatenessIsNoSilenceOfAMeter) {
   EXPECT_FALSE(watch.meter_lost(0));
 }
 
-TEST(HealthWatch, AMeterThatItsDriverHasNotAskedIsNotSilentForTenSeconds) {
+TEST(HealthWatch, AnUnpolledMeterIsNotSilentForTenSeconds) {
   HealthWatch watch(small_rig());
   Health health;
   health.device = "meter-1";
@@ -328,7 +328,7 @@ TEST(HealthWatch, AMeterThatItsDriverHasNotAskedIsNotSilentForTenSeconds) {
   EXPECT_TRUE(watch.meter_lost(0));
 }
 
-TEST(HealthWatch, SaysOnceThatAUnitIsGoneNotForEachLampAndMeterOnIt) {
+TEST(HealthWatch, ReportsALostUnitOnceNotForEachLampAndMeter) {
   Rig rig = small_rig();
   for (Fixture& fixture : rig.fixtures) {
     ModbusPatch patch;
@@ -351,7 +351,7 @@ TEST(HealthWatch, SaysOnceThatAUnitIsGoneNotForEachLampAndMeterOnIt) {
             "\"right\" cannot be controlled, luxmeter \"meter-1\" is not heard; check its power and its address");
 }
 
-TEST(HealthWatch, AnAlarmKeepsItsFirstFiguresWhileItLasts) {
+TEST(HealthWatch, AnAlarmKeepsItsFirstTextWhileItLasts) {
   HealthWatch watch(small_rig());
   hear_both(watch, 1);
   Health health = faulted("track", 1);
@@ -364,7 +364,7 @@ TEST(HealthWatch, AnAlarmKeepsItsFirstFiguresWhileItLasts) {
   EXPECT_EQ(watch.alarms()[0].text, text);
 }
 
-TEST(HealthWatch, AxesThatAreLostAreLightLostAndTheirBusSaysItOnce) {
+TEST(HealthWatch, LostAxesLoseLightAndAreReportedOncePerBus) {
   Rig rig = small_rig();
   rig.buses.push_back({});
   rig.buses[2].name = "can";

@@ -67,7 +67,7 @@ struct IdentifyShow {
   [[nodiscard]] ShowStatus status() const { return show->status(at(now_s)); }
 };
 
-TEST(Identify, ALampBlinksByHalfSecondsAndIsThenAsItWas) {
+TEST(Identify, ALampBlinksInHalfSecondsAndReturnsToItsLevel) {
   IdentifyShow small;
   small.show->apply(at(0), std::vector<double>{0.3, 0.2, 0.2, 0});
   small.run(20);
@@ -127,7 +127,7 @@ TEST(Identify, EmittersOfAHousingBlinkTogetherWithinTheirOwnLimits) {
   EXPECT_NEAR(cold, 0.5, 1e-9);
 }
 
-TEST(Identify, AHeadNodsAwayFromTheEndOfItsTravelAndLooksAsBefore) {
+TEST(Identify, AHeadNodsAwayFromItsTravelStopAndReturns) {
   IdentifyShow small;
   small.show->apply(at(0), std::vector<double>{0.3, 0.2, 0.2, 0.1});
   small.run(20);
@@ -149,7 +149,7 @@ TEST(Identify, AHeadNodsAwayFromTheEndOfItsTravelAndLooksAsBefore) {
   EXPECT_EQ(small.head().tilt_rad, 0.2);
 }
 
-TEST(Identify, WhereAPointIsLimitedNoHeadTurnsAndTheLimitHolds) {
+TEST(Identify, KeepsLimitsAndTurnsNoHeadAtLimitedPoints) {
   IdentifyShow small(true);
   small.show->apply(at(0), std::vector<double>{0.3, 0.2, 0.2, 0.1});
   small.run(20);
@@ -168,7 +168,7 @@ TEST(Identify, WhereAPointIsLimitedNoHeadTurnsAndTheLimitHolds) {
   EXPECT_GT(brightest_lx, 20);
 }
 
-TEST(Identify, AskedAgainItGoesOnLonger) {
+TEST(Identify, ARepeatedRequestExtendsIt) {
   IdentifyShow small;
   small.show->apply(at(0), std::vector<double>{0.3, 0.2, 0.2, 0});
   small.run(5);
@@ -186,7 +186,7 @@ TEST(Identify, AskedAgainItGoesOnLonger) {
   EXPECT_FALSE(small.status().fixtures[0].identified);
 }
 
-TEST(Identify, IsRefusedWhereItWouldMeanNothing) {
+TEST(Identify, IsRefusedWhereItWouldHaveNoEffect) {
   IdentifyShow small;
   EXPECT_FALSE(small.show->identify(at(0), 0, from_seconds(1)));  // nothing applied
   EXPECT_EQ(small.show->program().revision, IdentifyShow().show->program().revision);

@@ -39,7 +39,7 @@ TEST_F(MeterReadingsTest, ARefusedReadingChangesNothing) {
   EXPECT_EQ(readings.heard()[0]->lux, 100);
 }
 
-TEST_F(MeterReadingsTest, ASampleIsTakenOnceAndItsChangeIsKnown) {
+TEST_F(MeterReadingsTest, ASampleIsTakenOnceAndItsChangeIsTracked) {
   take_sample(100);
   EXPECT_EQ(readings.sampled_at(), now);
   EXPECT_FALSE(readings.has_sample(now, 0)) << "the next one begins";
@@ -54,7 +54,7 @@ TEST_F(MeterReadingsTest, ASampleIsTakenOnceAndItsChangeIsKnown) {
   EXPECT_TRUE(readings.believed()[0]);
 }
 
-TEST_F(MeterReadingsTest, NothingOfAForgottenMeterCounts) {
+TEST_F(MeterReadingsTest, AForgottenMeterLeavesNoReadings) {
   take_sample(100);
   hear(1, 50);
   readings.forget(0);

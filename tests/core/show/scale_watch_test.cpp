@@ -53,13 +53,13 @@ class ScaleWatchTest : public ::testing::Test {
   Time now{};
 };
 
-TEST_F(ScaleWatchTest, SaysNothingOfSteadyMeters) {
+TEST_F(ScaleWatchTest, RaisesNoAlarmForSteadyMeters) {
   read({1, 1.01, 0.99, 1, 1}, 50);
   EXPECT_TRUE(alarms().empty());
   EXPECT_EQ(watch.doubt_at(0, measured).log_share, 0);
 }
 
-TEST_F(ScaleWatchTest, NamesTheMeterThatDrifts) {
+TEST_F(ScaleWatchTest, NamesADriftingMeter) {
   read({1, 1, 1, 1, 1});
   read({1, 0.8, 1, 1, 1});
   ASSERT_EQ(alarms().size(), 1u);
@@ -68,7 +68,7 @@ TEST_F(ScaleWatchTest, NamesTheMeterThatDrifts) {
   EXPECT_EQ(watch.doubt_at(0, measured).log_share, 0);
 }
 
-TEST_F(ScaleWatchTest, AFewSamplesAreAPersonWalkingPast) {
+TEST_F(ScaleWatchTest, IgnoresAFewDeviatingSamples) {
   read({1, 1, 1, 1, 1});
   read({0.5, 1, 1, 1, 1}, 2);
   read({1, 1, 1, 1, 1}, 1);
@@ -76,7 +76,7 @@ TEST_F(ScaleWatchTest, AFewSamplesAreAPersonWalkingPast) {
   EXPECT_TRUE(alarms().empty());
 }
 
-TEST_F(ScaleWatchTest, MostThatDriftOneWayAreOneAlarm) {
+TEST_F(ScaleWatchTest, MostMetersDriftingOneWayRaiseOneAlarm) {
   read({1, 1, 1, 1, 1});
   read({0.8, 0.82, 0.78, 1, 1});
   ASSERT_EQ(alarms().size(), 1u);
@@ -85,7 +85,7 @@ TEST_F(ScaleWatchTest, MostThatDriftOneWayAreOneAlarm) {
   EXPECT_NEAR(watch.doubt_at(3, measured).log_share, std::log(0.8), 1e-12) << "what the model learned moved, too";
 }
 
-TEST_F(ScaleWatchTest, MetersThatDriftOppositeWaysDoNotDriftTogether) {
+TEST_F(ScaleWatchTest, MetersDriftingOppositeWaysRaiseSeparateAlarms) {
   read({1, 1, 1, 1, 1});
   read({0.8, 0.8, 1.2, 1.2, 1});
   EXPECT_EQ(alarms().size(), 4u);
@@ -93,7 +93,7 @@ TEST_F(ScaleWatchTest, MetersThatDriftOppositeWaysDoNotDriftTogether) {
   EXPECT_EQ(watch.doubt_at(4, measured).log_share, 0);
 }
 
-TEST_F(ScaleWatchTest, OneThatDriftsTheOtherWayKeepsItsOwnAlarm) {
+TEST_F(ScaleWatchTest, AMeterDriftingTheOtherWayKeepsItsOwnAlarm) {
   read({1, 1, 1, 1, 1});
   read({0.8, 0.8, 0.8, 1.2, 1});
   ASSERT_EQ(alarms().size(), 2u);
@@ -101,7 +101,7 @@ TEST_F(ScaleWatchTest, OneThatDriftsTheOtherWayKeepsItsOwnAlarm) {
   EXPECT_EQ(alarms()[1].device, "");
 }
 
-TEST_F(ScaleWatchTest, ApplyingAgainTakesTheLightAsItIs) {
+TEST_F(ScaleWatchTest, ForgettingDriftAcceptsTheLightAsItIs) {
   read({1, 1, 1, 1, 1});
   read({1, 0.8, 1, 1, 1});
   watch.forget_drift();

@@ -86,7 +86,7 @@ Look with_levels(Look look, std::vector<double> levels) {
   return look;
 }
 
-TEST(ByHand, LevelsThatAPersonWroteIntoAPlanStayThroughCorrections) {
+TEST(ByHand, LevelsSetByHandInAPlanStayThroughCorrections) {
   HandShow show;
   show.show->apply(
       show.now(),
@@ -108,7 +108,7 @@ TEST(ByHand, LevelsThatAPersonWroteIntoAPlanStayThroughCorrections) {
   EXPECT_GT(show.levels()[0], 0.1);
 }
 
-TEST(ByHand, CorrectionsAimAtTheGoalsOfThePlanInForceNotAtTheRigFiles) {
+TEST(ByHand, CorrectionsAimAtTheGoalsOfThePlanNotOfTheRigFile) {
   HandShow show;
   Look look = show.look({20, std::nullopt});
   show.show->apply(show.now(), with_levels(look, {0.17, 0.3, 0.0}), show.model);
@@ -130,7 +130,7 @@ TEST(ByHand, CorrectionsAimAtTheGoalsOfThePlanInForceNotAtTheRigFiles) {
   EXPECT_NEAR(show.lux()[0], 40, 1.2);
 }
 
-TEST(ByHand, ALevelIsHeldUntilReleasedAlsoOverTheNextPlan) {
+TEST(ByHand, ALevelIsHeldUntilReleasedEvenAcrossPlans) {
   HandShow show;
   show.show->apply(show.now(), std::vector<double>{0.36, 0.36, 0.0});
   show.run(20);
@@ -156,7 +156,7 @@ TEST(ByHand, ALevelIsHeldUntilReleasedAlsoOverTheNextPlan) {
   EXPECT_LT(show.levels()[2], 0.05);
 }
 
-TEST(ByHand, WithoutLuxmetersTheRestIsSolvedByTheModelAndAReleaseBringsTheLevelsBack) {
+TEST(ByHand, OpenLoopTheModelSolvesTheRestAndAReleaseRestoresLevels) {
   HandShow show(false);
   show.show->apply(show.now(), std::vector<double>{0.3, 0.36, 0.0});
   show.run(5);
@@ -173,7 +173,7 @@ TEST(ByHand, WithoutLuxmetersTheRestIsSolvedByTheModelAndAReleaseBringsTheLevels
               40, 1);
 }
 
-TEST(ByHand, EndsByItselfAfterItsTime) {
+TEST(ByHand, ExpiresByItselfAfterItsTime) {
   HandShow show;
   show.show->apply(show.now(), std::vector<double>{0.36, 0.36, 0.0});
   show.run(10);
@@ -187,7 +187,7 @@ TEST(ByHand, EndsByItselfAfterItsTime) {
   EXPECT_NEAR(show.lux()[1], 40, 1.2);
 }
 
-TEST(ByHand, ALimitWinsOverALevelAndAGoalAndSaysSo) {
+TEST(ByHand, ALimitOverridesALevelAndAGoalAndReportsIt) {
   HandShow show;
   show.show->apply(show.now(), std::vector<double>{0.36, 0.36, 0.0});
   show.run(20);
@@ -209,7 +209,7 @@ TEST(ByHand, ALimitWinsOverALevelAndAGoalAndSaysSo) {
   EXPECT_EQ(show.status().by_hand[0].why, "its limit of 50 lx wins");
 }
 
-TEST(ByHand, MaxLevelWinsAndWhatCannotBeIsRefusedWhole) {
+TEST(ByHand, MaxLevelWinsAndInvalidRequestsAreRefusedWhole) {
   HandShow show;
   show.rig.fixtures[1].max_level = 0.4;
   show.rig.fixtures[2].switched = true;
@@ -229,7 +229,7 @@ TEST(ByHand, MaxLevelWinsAndWhatCannotBeIsRefusedWhole) {
   EXPECT_FALSE(show.show->hold(show.now(), std::vector{goal_by_hand(0, std::nan(""))}));
 }
 
-TEST(ByHand, BlackoutAndTheSafeLookWinAndWhatWasHeldComesBack) {
+TEST(ByHand, BlackoutAndTheSafeLookOverrideItAndItReturnsAfterwards) {
   HandShow show;
   show.show->apply(show.now(), std::vector<double>{0.36, 0.36, 0.0});
   show.run(10);
@@ -256,7 +256,7 @@ TEST(ByHand, BlackoutAndTheSafeLookWinAndWhatWasHeldComesBack) {
   EXPECT_NEAR(show.levels()[0], 0.2, 1e-9);
 }
 
-TEST(ByHand, BeforeTheFirstPlanItIsKeptForIt) {
+TEST(ByHand, IsKeptForTheFirstPlan) {
   HandShow show;
   ASSERT_TRUE(show.show->hold(show.now(), std::vector{level_by_hand(0, 0.1), goal_by_hand(1, 30)}));
   show.run(2);

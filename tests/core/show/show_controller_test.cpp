@@ -79,7 +79,7 @@ TEST(ShowController, IsDarkAndIdleUntilAPlanIsApplied) {
   EXPECT_TRUE(small.status().alarms.empty());
 }
 
-TEST(ShowController, WalksFromFadeToHoldingAndMeetsTheGoals) {
+TEST(ShowController, GoesFromFadeToHoldingAndMeetsTheGoals) {
   SmallShow small;
   small.start().apply(small.now(), std::vector<double>{0.36, 0.36});
   std::vector<Phase> walked;
@@ -103,7 +103,7 @@ TEST(ShowController, WalksFromFadeToHoldingAndMeetsTheGoals) {
   EXPECT_EQ(status.detail, "all 2 goals met");
 }
 
-TEST(ShowController, ReducesAPlanBeforeAMeterHasConfirmedThatTheLimitHolds) {
+TEST(ShowController, ReducesAPlanUntilAMeterConfirmsItsLimit) {
   SmallShow small;
   small.start().apply(small.now(), std::vector<double>{0.49, 0.1});  // 50 lx in the model, exactly its limit
   small.run(1.0);
@@ -115,7 +115,7 @@ TEST(ShowController, ReducesAPlanBeforeAMeterHasConfirmedThatTheLimitHolds) {
 }
 
 // Whatever is applied, and whatever the corrections.
-TEST(ShowController, KeepsALimitOfPowerInWhatGoesOut) {
+TEST(ShowController, KeepsAPowerLimitInItsOutput) {
   SmallShow small;
   small.rig.luminaires.resize(1);
   small.rig.luminaires[0].watts = 50;
@@ -132,7 +132,7 @@ TEST(ShowController, KeepsALimitOfPowerInWhatGoesOut) {
   EXPECT_GT(max_watts, 29.9) << "goals of 40 lx want 39 W and more";
 }
 
-TEST(ShowController, ClampsLevelsThatAreOutOfRangeOrNoNumbers) {
+TEST(ShowController, ClampsOutOfRangeAndNaNLevels) {
   SmallShow small;
   small.rig.fixtures[1].max_level = 0.2;
   small.rig.points[0].max_lx.reset();
@@ -141,7 +141,7 @@ TEST(ShowController, ClampsLevelsThatAreOutOfRangeOrNoNumbers) {
   EXPECT_EQ(small.status().fixtures[1].target_level, 0.2);
 }
 
-TEST(ShowController, IgnoresATimeThatGoesBackwards) {
+TEST(ShowController, IgnoresTimeThatGoesBackwards) {
   SmallShow small;
   small.start().apply(small.now(), std::vector<double>{0.3, 0.3});
   small.run(10);
@@ -162,7 +162,7 @@ TEST(ShowController, IgnoresATimeThatGoesBackwards) {
   EXPECT_EQ(small.status().points[0].measured_lx, before.points[0].measured_lx);
 }
 
-TEST(ShowController, ObeysABlackoutEvenWhenTheClockOfTheCallerIsBehind) {
+TEST(ShowController, ObeysABlackoutEvenWithALateCallersClock) {
   SmallShow small;
   small.start().apply(small.now(), std::vector<double>{0.3, 0.3});
   small.run(5);
@@ -173,7 +173,7 @@ TEST(ShowController, ObeysABlackoutEvenWhenTheClockOfTheCallerIsBehind) {
   EXPECT_TRUE(small.status().converged);
 }
 
-TEST(ShowController, AsksTheOutputToChangeOnlyByANewRevision) {
+TEST(ShowController, ChangesTheOutputOnlyWithANewRevision) {
   SmallShow small;
   small.start();
   std::uint64_t revision = small.show->program().revision;
@@ -187,7 +187,7 @@ TEST(ShowController, AsksTheOutputToChangeOnlyByANewRevision) {
   EXPECT_EQ(small.show->program().revision, revision);
 }
 
-TEST(ShowController, StaysSafeWhenAskedToUntilTheNextPlan) {
+TEST(ShowController, StaysSafeOnRequestUntilTheNextPlan) {
   SmallShow small;
   small.start().apply(small.now(), std::vector<double>{0.3, 0.3});
   small.run(10);
@@ -201,7 +201,7 @@ TEST(ShowController, StaysSafeWhenAskedToUntilTheNextPlan) {
   EXPECT_EQ(small.status().phase, Phase::holding);
 }
 
-TEST(ShowController, KeepsTheSafeLookWithinTheLimitsToo) {
+TEST(ShowController, KeepsTheSafeLookWithinTheLimits) {
   SmallShow small;
   small.rig.safe.level = 0.9;
   small.rig.fixtures[1].safe_level = 0.05;
@@ -213,7 +213,7 @@ TEST(ShowController, KeepsTheSafeLookWithinTheLimitsToo) {
   EXPECT_GT(level[0], 0.1) << "scaled down, not out";
 }
 
-TEST(ShowController, TakesAPlanDuringAFailureAndShowsItWhenEverythingIsBack) {
+TEST(ShowController, AcceptsAPlanDuringAFailureAndShowsItAfterRecovery) {
   SmallShow small;
   Health gone;
   gone.device = "lights";
@@ -257,7 +257,7 @@ TEST(ShowController, RunsARigWithoutLuxmetersOpenLoop) {
   EXPECT_EQ(small.levels(), (std::vector<double>{0.2, 0.3}));
 }
 
-TEST(ShowController, NeverJumpsUpNorLeavesItsBoundsWhateverIsFedToIt) {
+TEST(ShowController, NeverJumpsUpOrLeavesItsBoundsOnAnyInput) {
   const double odd[] = {std::nan(""), std::numeric_limits<double>::infinity(), -1, 0, 1e-300, 40, 45, 1e308};
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     SmallShow small;
@@ -316,7 +316,7 @@ struct TurningShow : SmallShow {
   }
 };
 
-TEST(ShowController, LightsNothingUntilItsHeadsCanHaveTurned) {
+TEST(ShowController, LightsNothingUntilItsHeadsMustHaveTurned) {
   TurningShow small;
   small.start().apply(small.now(), std::vector<double>{0.3, 0.3});
   // From either end of 360° to the middle: two seconds, plus half a second until it moves.
@@ -331,7 +331,7 @@ TEST(ShowController, LightsNothingUntilItsHeadsCanHaveTurned) {
   small.run_until(Phase::holding);
 }
 
-TEST(ShowController, WaitsForAZoomAsForPanAndTilt) {
+TEST(ShowController, WaitsForAZoomLikeForPanAndTilt) {
   TurningShow small;
   Fixture& head = small.rig.fixtures[1];
   head.range.beam_min_rad = 0.1;
@@ -406,7 +406,7 @@ TEST(ShowController, ABlackoutTurnsHeadsAtOnceAndTheyComeBackLit) {
   EXPECT_GT(small.levels()[1], 0.05);
 }
 
-TEST(ShowController, AnotherPlanOrTheSafeLookMayComeWhileAHeadGoesDark) {
+TEST(ShowController, AcceptsAPlanOrTheSafeLookWhileAHeadGoesDark) {
   TurningShow small;
   small.start().apply(small.now(), std::vector<double>{0.36, 0.36});
   small.run_until(Phase::holding);
@@ -423,7 +423,7 @@ TEST(ShowController, AnotherPlanOrTheSafeLookMayComeWhileAHeadGoesDark) {
   EXPECT_EQ(small.show->program().joints[1].pan_rad, 0) << "the safe look is not the time to turn";
 }
 
-TEST(ShowController, AHeadThatIsToldAnewOnItsWayIsDarkUntilItCanHaveGotThere) {
+TEST(ShowController, ARedirectedHeadStaysDarkUntilItMustHaveArrived) {
   TurningShow small;
   small.start().apply(small.now(), std::vector<double>{0.36, 0.36});
   small.run_until(Phase::holding);
@@ -442,7 +442,7 @@ TEST(ShowController, AHeadThatIsToldAnewOnItsWayIsDarkUntilItCanHaveGotThere) {
 }
 
 // Goals alone: the meters' corrections stay, and no head goes dark.
-TEST(ShowController, OtherGoalsKeepWhatTheMetersTaught) {
+TEST(ShowController, NewGoalsKeepTheMetersCorrections) {
   TurningShow small;
   small.start().apply(small.now(), std::vector<double>{0.36, 0.36});
   small.run_until(Phase::holding);

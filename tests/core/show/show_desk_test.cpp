@@ -68,7 +68,7 @@ struct DeskShow {
   DeskFrame frame;
 };
 
-TEST(ShowDesk, CannotPushALimitedPointAboveItsLimitWhateverItAsks) {
+TEST(ShowDesk, NeverLiftsALimitedPointAboveItsLimit) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> share(-0.2, 1.2);
   for (const DeskMode mode : {DeskMode::merge, DeskMode::takeover}) {
@@ -97,7 +97,7 @@ TEST(ShowDesk, CannotPushALimitedPointAboveItsLimitWhateverItAsks) {
   }
 }
 
-TEST(ShowDesk, BelievesNoMeterWhileADeskHasASayAndGoesOnAfterwards) {
+TEST(ShowDesk, LearnsFromNoMeterWhileADeskIsInControlAndResumes) {
   DeskShow small({DeskMode::takeover, HandBack::fade});
   small.desk(DeskPresence::absent, 0, 0);
   small.show->apply(at(0), std::vector<double>{0.3, 0.3});
@@ -118,7 +118,7 @@ TEST(ShowDesk, BelievesNoMeterWhileADeskHasASayAndGoesOnAfterwards) {
             "desk \"desk\" is lost: dmx, universe 1 is Luxrig's again; look after the desk or its cable");
 }
 
-TEST(ShowDesk, ADeskThatDrivesTheLampsItselfIsHeldToNoLimitAndTheStatusSaysSo) {
+TEST(ShowDesk, StatusReportsThatADeskDrivingLampsItselfIsUnlimited) {
   DeskShow small({DeskMode::standby, HandBack::fade}, true, false);
   small.desk(DeskPresence::present, 0.9, 0.1);
   small.show->apply(at(0), std::vector<double>{0.2, 0.2});

@@ -97,7 +97,7 @@ struct Stage {
   }
 };
 
-TEST(ShowKeepOut, HoweverADeskTurnsALitHeadNoBeamMeetsTheZone) {
+TEST(ShowKeepOut, NoLitBeamMeetsTheZoneHoweverADeskTurnsIt) {
   Random random(21);
   double lit_s = 0, lit_while_turning_s = 0, in_zone_s = 0;
   for (int run = 0; run < 12; ++run) {
@@ -132,7 +132,7 @@ TEST(ShowKeepOut, HoweverADeskTurnsALitHeadNoBeamMeetsTheZone) {
   EXPECT_GT(in_zone_s, 20);
 }
 
-TEST(ShowKeepOut, AHeadIsDarkBeforeItIsLetGoAndLitAgainWhenItIsThrough) {
+TEST(ShowKeepOut, AHeadGoesDarkBeforeCrossingAZoneAndIsRelitAfterwards) {
   Stage small(stage());
   ASSERT_EQ(small.show.add_desk({DeskMode::takeover, HandBack::at_once}, {"desk", {0}}), 0u);
   const Joints one{kTowardsTheZone_rad + 1.3, 1, 0}, other{kTowardsTheZone_rad - 1.3, 1, 0};
@@ -161,7 +161,7 @@ TEST(ShowKeepOut, AHeadIsDarkBeforeItIsLetGoAndLitAgainWhenItIsThrough) {
   EXPECT_EQ(small.show.status(at(small.now_s)).fixtures[0].waits_for, "");
 }
 
-TEST(ShowKeepOut, AMoveThatPassesTheZoneStaysLit) {
+TEST(ShowKeepOut, AMoveThatMissesTheZoneStaysLit) {
   Stage small(stage());
   ASSERT_EQ(small.show.add_desk({DeskMode::takeover, HandBack::at_once}, {"desk", {0}}), 0u);
   small.desk(1, {kTowardsTheZone_rad + 1.6, 1, 0});
@@ -173,7 +173,7 @@ TEST(ShowKeepOut, AMoveThatPassesTheZoneStaysLit) {
   }
 }
 
-TEST(ShowKeepOut, AHeadThatADeskTurnsIntoAZoneStaysDarkAndSaysSo) {
+TEST(ShowKeepOut, AHeadTurnedIntoAZoneByADeskStaysDarkWithAnAlarm) {
   Stage small(stage());
   ASSERT_EQ(small.show.add_desk({DeskMode::takeover, HandBack::at_once}, {"desk", {0}}), 0u);
   small.desk(1, {kTowardsTheZone_rad, 0.8, 0});
@@ -186,7 +186,7 @@ TEST(ShowKeepOut, AHeadThatADeskTurnsIntoAZoneStaysDarkAndSaysSo) {
   EXPECT_FALSE(small.show.identify(at(small.now_s), 0, from_seconds(1)));
 }
 
-TEST(ShowKeepOut, OwnMovesAreDarkAsEverAndTheSafeLookLightsNoZone) {
+TEST(ShowKeepOut, OwnMovesStayDarkAndTheSafeLookLightsNoZone) {
   Stage small(stage());
   small.show.apply(at(0), std::vector<double>{0.6, 0.6});  // straight down
   small.run(8);
@@ -204,7 +204,7 @@ TEST(ShowKeepOut, OwnMovesAreDarkAsEverAndTheSafeLookLightsNoZone) {
   EXPECT_EQ(small.level(), 0);
 }
 
-TEST(ShowKeepOut, IdentifyBlinksWhereANodWouldReachTheZone) {
+TEST(ShowKeepOut, IdentifyBlinksInsteadOfNoddingIntoTheZone) {
   for (const bool near : {false, true}) {
     Rig rig = stage();
     // The edge of the zone is some degrees further on.
@@ -227,7 +227,7 @@ TEST(ShowKeepOut, IdentifyBlinksWhereANodWouldReachTheZone) {
   }
 }
 
-TEST(ShowKeepOut, AHeadThatDoesNotObeyIsNotTakenForThere) {
+TEST(ShowKeepOut, AnUnresponsiveHeadIsNotAssumedToHaveArrived) {
   Stage small(stage());
   ASSERT_EQ(small.show.add_desk({DeskMode::takeover, HandBack::at_once}, {"desk", {0}}), 0u);
   const std::vector<Health> dead = {{"dmx", Life::faulted, "", {}, {}}}, well = {{"dmx", Life::active, "", {}, {}}};

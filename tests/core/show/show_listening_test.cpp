@@ -56,7 +56,7 @@ struct ListeningShow {
 
 constexpr DeskMode kSilentModes[] = {DeskMode::takeover, DeskMode::standby};
 
-TEST(ShowListening, APlanWaitsUntilItIsKnownThatThereIsNoDeskAndThenFadesIn) {
+TEST(ShowListening, APlanWaitsUntilNoDeskIsConfirmedAndThenFadesIn) {
   for (const DeskMode mode : kSilentModes) {
     ListeningShow small({mode, HandBack::fade});
     small.hear(DeskPresence::unknown);
@@ -76,7 +76,7 @@ TEST(ShowListening, APlanWaitsUntilItIsKnownThatThereIsNoDeskAndThenFadesIn) {
   }
 }
 
-TEST(ShowListening, StagesAndHeadsBeginWhenTheWaitingIsOver) {
+TEST(ShowListening, StagesAndHeadsStartWhenTheWaitIsOver) {
   ListeningShow small({DeskMode::takeover, HandBack::fade});
   small.rig.fixtures[1].stage = 2;
   small.rig.startup.stage_s = 2;
@@ -99,7 +99,7 @@ TEST(ShowListening, StagesAndHeadsBeginWhenTheWaitingIsOver) {
   EXPECT_EQ(small.sent, (std::vector<double>{0.8, 0.6}));
 }
 
-TEST(ShowListening, ADeskThatIsThereHasTheLightFromTheFirstFrameOn) {
+TEST(ShowListening, APresentDeskHasTheLightFromTheFirstFrame) {
   for (const DeskMode mode : kSilentModes) {
     ListeningShow small({mode, HandBack::fade});
     small.hear(DeskPresence::unknown);
@@ -118,7 +118,7 @@ TEST(ShowListening, ADeskThatIsThereHasTheLightFromTheFirstFrameOn) {
   }
 }
 
-TEST(ShowListening, ABusThatCannotSayKeepsTheRestForFiveSecondsAndItsOwnLightComesByFade) {
+TEST(ShowListening, AnUndecidedBusDelaysTheOthersForFiveSecondsAndFadesInLater) {
   ListeningShow small({DeskMode::standby, HandBack::fade});
   small.hear(DeskPresence::unknown);
   small.show->apply(at(0), std::vector<double>{0.8, 0.6});
@@ -137,7 +137,7 @@ TEST(ShowListening, ABusThatCannotSayKeepsTheRestForFiveSecondsAndItsOwnLightCom
   EXPECT_LT(small.largest_step, 0.03);
 }
 
-TEST(ShowListening, WhereTheBrighterCountsNothingWaits) {
+TEST(ShowListening, MergeModeDoesNotWait) {
   ListeningShow small({DeskMode::merge, HandBack::fade});
   small.hear(DeskPresence::unknown);
   small.show->apply(at(0), std::vector<double>{0.8, 0.6});
@@ -145,7 +145,7 @@ TEST(ShowListening, WhereTheBrighterCountsNothingWaits) {
   EXPECT_EQ(small.sent, (std::vector<double>{0.8, 0.6}));
 }
 
-TEST(ShowListening, LightThatAGuardianSentGoesOnWithoutAPauseAndWhatItWasSilentAboutDoesNot) {
+TEST(ShowListening, AGuardiansLightContinuesWithoutAPauseUnlessItWasSilent) {
   for (const bool silent : {false, true}) {
     ListeningShow small({DeskMode::takeover, HandBack::fade});
     small.hear(DeskPresence::unknown);

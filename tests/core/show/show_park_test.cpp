@@ -65,7 +65,7 @@ struct ParkShow {
   [[nodiscard]] ShowStatus status() const { return show->status(at(now_s)); }
 };
 
-TEST(ShowPark, GoesDarkThenTurnsAndTheRestGoesOn) {
+TEST(ShowPark, GoesDarkThenTurnsWhileTheRestContinues) {
   ParkShow small;
   small.show->apply(at(0), std::vector<double>{0.4, 0.3, 0.4});
   small.run(20);
@@ -103,7 +103,7 @@ TEST(ShowPark, GoesDarkThenTurnsAndTheRestGoesOn) {
   EXPECT_FALSE(small.status().fixtures[0].parked);
 }
 
-TEST(ShowPark, ADeskNeitherLightsNorTurnsWhatRests) {
+TEST(ShowPark, ADeskNeitherLightsNorTurnsAParkedHead) {
   ParkShow small;
   ASSERT_EQ(small.show->add_desk({DeskMode::takeover, HandBack::at_once}, {"desk", {0, 2}}), 0u);
   small.show->apply(at(0), std::vector<double>{0.4, 0.3, 0.4});
@@ -119,7 +119,7 @@ TEST(ShowPark, ADeskNeitherLightsNorTurnsWhatRests) {
   EXPECT_EQ(small.levels()[2], 1);
 }
 
-TEST(ShowPark, IsRefusedWhereThereIsNoPlaceToRest) {
+TEST(ShowPark, IsRefusedWithoutAParkPosition) {
   ParkShow small;
   const auto refused = small.show->park(at(0), std::vector<std::size_t>{1});
   ASSERT_FALSE(refused);
@@ -130,7 +130,7 @@ TEST(ShowPark, IsRefusedWhereThereIsNoPlaceToRest) {
   EXPECT_FALSE(without.park(at(0), {}));
 }
 
-TEST(ShowPark, BeforeAnythingWasAppliedHeadsTurnInTheDark) {
+TEST(ShowPark, HeadsTurnInTheDarkBeforeAnyPlan) {
   ParkShow small;
   ASSERT_TRUE(small.show->park(at(0), {}));
   small.run(6);
@@ -138,7 +138,7 @@ TEST(ShowPark, BeforeAnythingWasAppliedHeadsTurnInTheDark) {
   EXPECT_EQ(small.levels(), std::vector<double>(3, 0.0));
 }
 
-TEST(ShowPark, RightAfterAPlanAsAfterARestart) {
+TEST(ShowPark, WorksRightAfterAPlanAsAfterARestart) {
   ParkShow small;
   small.show->apply(at(0), std::vector<double>{0.4, 0.3, 0.4});
   ASSERT_TRUE(small.show->park(at(0), {}));  // no step between the two
@@ -150,7 +150,7 @@ TEST(ShowPark, RightAfterAPlanAsAfterARestart) {
   EXPECT_GT(small.levels()[2], 0.1);
 }
 
-TEST(ShowPark, TheSafeLookLeavesThemDark) {
+TEST(ShowPark, TheSafeLookLeavesParkedHeadsDark) {
   ParkShow small;
   small.show->apply(at(0), std::vector<double>{0.4, 0.3, 0.4});
   small.run(8);
@@ -163,7 +163,7 @@ TEST(ShowPark, TheSafeLookLeavesThemDark) {
   EXPECT_FALSE(small.show->park(at(small.now_s), {}));
 }
 
-TEST(ShowPark, AnotherPlanMeanwhileWinsAndAFailureWaits) {
+TEST(ShowPark, ANewPlanWinsAndAFailureWaits) {
   ParkShow small;
   small.show->apply(at(0), std::vector<double>{0.4, 0.3, 0.4});
   small.run(8);

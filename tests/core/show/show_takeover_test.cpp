@@ -65,7 +65,7 @@ struct TakeoverShow {
 
 const LightInForce kLight{{{0.3, 0.8, 0.5}, {{0.7, 0.3}, {}, {}}}, {0.2, 0.2, 0.2}, 1, 2};
 
-TEST(ShowTakeover, WithoutAPlanTheLightIsHeldAndThenGoesToTheSafeLook) {
+TEST(ShowTakeover, WithoutAPlanHoldsTheLightAndThenGoesToTheSafeLook) {
   TakeoverShow small;
   small.begin(kLight);
   EXPECT_NE(small.show->program().revision, 0u) << "it goes out at once";
@@ -81,7 +81,7 @@ TEST(ShowTakeover, WithoutAPlanTheLightIsHeldAndThenGoesToTheSafeLook) {
   EXPECT_EQ(small.levels(), kLight.safe_levels);
 }
 
-TEST(ShowTakeover, APlanFadesFromWhatIsOn) {
+TEST(ShowTakeover, APlanFadesFromTheCurrentLight) {
   TakeoverShow small;
   small.begin(kLight);
   small.run(0.3);
@@ -122,7 +122,7 @@ TEST(ShowTakeover, AHeadThatMustTurnIsFadedOutFirst) {
   EXPECT_LT(small.largest_step, 0.02);
 }
 
-TEST(ShowTakeover, ALimitWithoutWhatMetersTaughtIsNoJump) {
+TEST(ShowTakeover, ALimitWithoutLearntGainsCausesNoJump) {
   // 60 · 0.3 + 10 · 0.8 + 50 · 0.5 = 51 lx in the model: meters had taught the dead controller that it is less.
   TakeoverShow small(40);
   small.begin(kLight);
@@ -144,7 +144,7 @@ TEST(ShowTakeover, ALimitWithoutWhatMetersTaughtIsNoJump) {
   }
 }
 
-TEST(ShowTakeover, LampsThatAreOnDoNotComeUpByStages) {
+TEST(ShowTakeover, LitLampsAreNotStaged) {
   TakeoverShow small;
   small.rig.startup.stage_s = 2;
   LightInForce light = kLight;
@@ -155,7 +155,7 @@ TEST(ShowTakeover, LampsThatAreOnDoNotComeUpByStages) {
   EXPECT_EQ(small.levels(), kLight.look.levels);
 }
 
-TEST(ShowTakeover, AHeadOnAxesStaysDarkUntilItIsKnownWhereItLooks) {
+TEST(ShowTakeover, AHeadOnAxesStaysDarkUntilItsPoseIsKnown) {
   TakeoverShow small;
   small.rig.fixtures[0].axes = AxesPatch{0, {5, 500, -2, 3}, {6, 500, -1, 2}};
   small.begin(kLight);
@@ -171,7 +171,7 @@ TEST(ShowTakeover, AHeadOnAxesStaysDarkUntilItIsKnownWhereItLooks) {
   EXPECT_LT(small.largest_step, 0.02);
 }
 
-TEST(ShowTakeover, ABlackoutIsDarkAndLiftedLeadsBack) {
+TEST(ShowTakeover, ABlackoutIsDarkAndLiftingItRestoresTheLook) {
   TakeoverShow small;
   small.begin(kLight);
   small.show->apply(at(small.now_s), std::vector<double>{0.3, 0.8, 0.5});

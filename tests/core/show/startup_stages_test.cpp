@@ -63,7 +63,7 @@ struct StartingShow {
   [[nodiscard]] Phase phase() const { return show->status(at(now_s)).phase; }
 };
 
-TEST(StartupStages, WithoutAWordNothingIsStaged) {
+TEST(StartupStages, NothingIsStagedByDefault) {
   StartingShow small;
   small.start();
   small.show->apply(at(0), std::vector<double>(4, 1.0));
@@ -72,7 +72,7 @@ TEST(StartupStages, WithoutAWordNothingIsStaged) {
   EXPECT_EQ(small.levels(), std::vector<double>(4, 1.0));
 }
 
-TEST(StartupStages, StagesFollowOneAnotherByNumber) {
+TEST(StartupStages, StagesFollowInNumericOrder) {
   StartingShow small;
   small.rig.startup.stage_s = 3;
   small.start();
@@ -115,7 +115,7 @@ TEST(StartupStages, NoSecondAddsMoreWattsThanAllowed) {
   }
 }
 
-TEST(StartupStages, ADeskIsStagedToo) {
+TEST(StartupStages, ADesksLevelsAreStagedToo) {
   StartingShow small;
   small.rig.startup.stage_s = 5;
   small.start();
@@ -154,7 +154,7 @@ TEST(StartupStages, BlackoutAndTheSafeLookNeverWait) {
   for (const double level : small.levels()) EXPECT_NEAR(level, 0.3, 1e-12);  // including those that had not begun
 }
 
-TEST(StartupStages, WhatWasLostStartsAnewOnlyWhereThatMeansAPowerCut) {
+TEST(StartupStages, LostLampsRestartInStagesOnlyWhereALossMeansAPowerCut) {
   for (const bool after_loss : {false, true}) {
     StartingShow small;
     small.rig.startup.max_watts_per_s = 200;
@@ -180,7 +180,7 @@ TEST(StartupStages, WhatWasLostStartsAnewOnlyWhereThatMeansAPowerCut) {
 }
 
 /// A daemon died in the middle of it. Its guardian held the lit lamps until our controller took over.
-TEST(StartupStages, WhatBurnsAlreadyGoesOnAndTheRestComesByStages) {
+TEST(StartupStages, LitLampsStayOnAndTheRestComesByStages) {
   for (const bool by_watts : {false, true}) {
     StartingShow small;
     small.rig.startup.stage_s = 3;
@@ -212,7 +212,7 @@ TEST(StartupStages, WhatBurnsAlreadyGoesOnAndTheRestComesByStages) {
   }
 }
 
-TEST(StartupStages, AHeadThatParksBeforeItsTurnIsNeverLit) {
+TEST(StartupStages, AHeadParkedBeforeItsStageIsNeverLit) {
   for (const bool power_first : {false, true}) {
     StartingShow small;
     small.rig.fixtures[1].moves = true;
@@ -233,7 +233,7 @@ TEST(StartupStages, AHeadThatParksBeforeItsTurnIsNeverLit) {
   }
 }
 
-TEST(StartupStages, AHeadIsDarkUntilItHasFoundItsZero) {
+TEST(StartupStages, AHeadIsDarkUntilItHasHomed) {
   Rig rig = lamps();
   rig.fixtures[1].moves = true;
   rig.fixtures[1].range = {-1, 1, -1, 1};

@@ -24,7 +24,7 @@ std::vector<double> levels(const OutputProgram& program, Time now) {
   return level;
 }
 
-TEST(Switched, GoesOffAsAFadeBeginsAndOnAsItEnds) {
+TEST(Switched, TurnsOffAtTheStartOfAFadeAndOnAtItsEnd) {
   OutputProgram program;
   program.from_level = {1, 0, 1, 0.2};
   program.to_level = {0, 1, 1, 0.6};
@@ -43,7 +43,7 @@ TEST(Switched, GoesOffAsAFadeBeginsAndOnAsItEnds) {
   EXPECT_EQ(levels(program, at(12)), (std::vector<double>{0, 1, 1, 0.6}));
 }
 
-TEST(Switched, IsOffWhereItMayNotHaveAll) {
+TEST(Switched, IsOffWhereItMayNotBeFull) {
   OutputProgram program;
   program.from_level = program.to_level = {1, 1, 0.7, std::nan("")};
   program.max_level = {0.9, 1, 1, 1};
@@ -59,7 +59,7 @@ TEST(Switched, IsOffWhereItMayNotHaveAll) {
   EXPECT_EQ(levels(program, at(10.01))[1], 0) << "it cannot dim on the way to a keep-out zone";
 }
 
-TEST(Switched, OthersDimForItAsLongAsThatIsEnough) {
+TEST(Switched, OthersDimForItWhileThatSuffices) {
   const Eigen::MatrixXd lux{{60, 40}};
   const std::vector<std::uint8_t> switched{1, 0};
   std::vector<double> level{1, 1};
@@ -76,7 +76,7 @@ TEST(Switched, OthersDimForItAsLongAsThatIsEnough) {
   EXPECT_NEAR(level[1], 0.5, 1e-12);
 }
 
-TEST(Switched, LimitsHoldForAnyLevelsAndWhateverIsUnknown) {
+TEST(Switched, LimitsHoldForAnyLevels) {
   std::mt19937_64 random(11);
   std::uniform_real_distribution<double> unit(0, 1);
   int went_off = 0, stayed = 0;
@@ -119,7 +119,7 @@ TEST(Switched, LimitsHoldForAnyLevelsAndWhateverIsUnknown) {
   EXPECT_GT(stayed, 1000);
 }
 
-TEST(Switched, AnswersADeskFromHalfUpAndWithinLimits) {
+TEST(Switched, FollowsADeskFromHalfUpWithinLimits) {
   OutputProgram program;
   program.from_level = program.to_level = {0, 0};
   program.max_level = {1, 1};
@@ -143,7 +143,7 @@ TEST(Switched, AnswersADeskFromHalfUpAndWithinLimits) {
   EXPECT_EQ(with(1, 0.5), (std::vector<double>{0, 0.5}));
 }
 
-TEST(Switched, APlanSetsItToNothingElseThanOnOrOff) {
+TEST(Switched, APlanMaySetItOnlyOnOrOff) {
   Rig rig = two_fixture_rig();
   rig.fixtures[0].switched = true;
   EXPECT_TRUE(levels_for(plan_for_two(1, 0.5), rig, "plan.json"));
@@ -204,7 +204,7 @@ struct Hall {
   }
 };
 
-TEST(Switched, ShowsKeepTheirLimitsAndDoNotRattleTheirRelays) {
+TEST(Switched, ShowsKeepLimitsWithoutChatteringRelays) {
   int met = 0, goals = 0, on_at_the_end = 0, forced_off = 0, flips = 0;
   double max_share = 0;
   for (unsigned seed = 0; seed < 300; ++seed) {

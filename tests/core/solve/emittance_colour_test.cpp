@@ -41,7 +41,7 @@ const std::vector<Vec3> kRgbLeds = {within_rec709(rgb_of_xy({0.62, 0.34})).rgb,
                                     within_rec709(rgb_of_xy({0.16, 0.08})).rgb};
 
 // Three emitters and one point: the levels are the solution of a 3 × 3 system, and the chromaticity is met exactly.
-TEST(EmittanceColour, ThreeEmittersOverAPointMixAnyColourBetweenThem) {
+TEST(EmittanceColour, ThreeEmittersMixAnyColourBetweenThem) {
   Random random(1);
   for (int trial = 0; trial < 50; ++trial) {
     const Vec3 lux(random.between(100, 400), random.between(100, 400), random.between(100, 400));
@@ -62,7 +62,7 @@ TEST(EmittanceColour, ThreeEmittersOverAPointMixAnyColourBetweenThem) {
 }
 
 // White light and white goals: same result as without colour, for single goals and with limits.
-TEST(EmittanceColour, InWhiteIsWhatItIsWithoutColour) {
+TEST(EmittanceColour, InWhiteMatchesTheResultWithoutColour) {
   Random random(2);
   for (int trial = 0; trial < 30; ++trial) {
     const Index points = 6, lights = 4;
@@ -141,7 +141,7 @@ double best_of_all_active_sets(const MatrixXd& A, const VectorXd& b, const Vecto
   return best;
 }
 
-TEST(EmittanceColour, IsTheBestOfAllActiveSetsWithAndWithoutALimitOfPower) {
+TEST(EmittanceColour, IsTheBestOfAllActiveSetsWithAndWithoutAPowerLimit) {
   Random random(3);
   int limited = 0;
   for (int trial = 0; trial < 60; ++trial) {
@@ -178,7 +178,7 @@ TEST(EmittanceColour, IsTheBestOfAllActiveSetsWithAndWithoutALimitOfPower) {
 // Two lights that each light a point of their own, one at twice the power: minimise (100 a − 80)² + (100 b − 80)² with
 // 10 a + 20 b ≤ 12. Lagrange: 100 (80 − 100 a) = 5 λ', 100 (80 − 100 b) = 10 λ' with 2 λ' for both: b = 2 a − 0.8,
 // so 10 a + 40 a − 16 = 12: a = 0.56, b = 0.32.
-TEST(EmittancePower, SharesTheLimitAsLagrangeDoes) {
+TEST(EmittancePower, SharesTheLimitByLagrange) {
   EmittanceProblem p;
   p.lux_per_level = MatrixXd{{100, 0}, {0, 100}};
   p.goal_lx = VectorXd::Constant(2, 80);
@@ -207,7 +207,7 @@ TEST(EmittancePower, SharesTheLimitAsLagrangeDoes) {
   EXPECT_FALSE(solve_emittance(p));
 }
 
-TEST(EmittanceColour, SaysWhyAColourIsMissed) {
+TEST(EmittanceColour, ReportsWhyAColourIsMissed) {
   // A warm and a cool white cannot make green light.
   EmittanceProblem p = coloured_problem(MatrixXd{{200, 200}}, {rgb_of_cct(2700), rgb_of_cct(6500)});
   p.goal_lx = VectorXd::Constant(1, 100);
@@ -232,7 +232,7 @@ TEST(EmittanceColour, SaysWhyAColourIsMissed) {
       << solution->points[0].reason;
 }
 
-TEST(EmittanceColour, RefusesWhatDoesNotFitTogether) {
+TEST(EmittanceColour, RefusesInconsistentInput) {
   EmittanceProblem p = coloured_problem(MatrixXd{{20, 200}}, {Vec3(kRgbLeds[0]), rgb_of_cct(4000)});
   p.goal_lx = VectorXd::Constant(1, 150);
   ASSERT_TRUE(solve_emittance(p));

@@ -198,7 +198,7 @@ TEST(Emittance, MeetsTheKktConditionsOnAThousandProblems) {
   std::printf("worst KKT residual of 1000: %.2e, as the solver reports it %.2e\n", worst, worst_own);
 }
 
-TEST(Emittance, FindsWhatEnumeratingAllActiveSetsFinds) {
+TEST(Emittance, MatchesEnumerationOfAllActiveSets) {
   for (int seed = 0; seed < 600; ++seed) {
     if (seed % 5 == 4) continue;  // the reference cannot handle extreme units
     const EmittanceProblem p = random_problem(seed, 4, 3);
@@ -209,7 +209,7 @@ TEST(Emittance, FindsWhatEnumeratingAllActiveSetsFinds) {
   }
 }
 
-TEST(Emittance, KeepsEveryLimitToTheLastBitOnTenThousandProblems) {
+TEST(Emittance, KeepsEveryLimitExactlyOnTenThousandProblems) {
   for (int seed = 0; seed < 10000; ++seed) {
     const EmittanceProblem p = random_problem(seed, 8, 6);
     const auto solution = solve_emittance(p);
@@ -219,7 +219,7 @@ TEST(Emittance, KeepsEveryLimitToTheLastBitOnTenThousandProblems) {
   }
 }
 
-TEST(Emittance, GivesAReasonForEveryMissedGoalAndNoneForAMetOne) {
+TEST(Emittance, GivesAReasonForMissedGoalsOnly) {
   for (int seed = 0; seed < 1000; ++seed) {
     const EmittanceProblem p = random_problem(seed, 10, 6);
     const auto solution = solve_emittance(p);
@@ -250,7 +250,7 @@ TEST(Emittance, EqualsNnlsWhereNothingBindsFromAbove) {
   }
 }
 
-TEST(Emittance, APointThatDaylightOverfillsHoldsNoOtherDown) {
+TEST(Emittance, APointOverlitByDaylightHoldsNoOtherDown) {
   EmittanceProblem p;
   p.lux_per_level = MatrixXd{{20.0, 1.0}, {2.0, 100.0}};
   p.fixed_lx = VectorXd{{5000, 100}};
@@ -310,7 +310,7 @@ TEST(Emittance, NamesTheLightAtItsHighestLevel) {
   EXPECT_EQ(solution->points[0].reason, "held at 100 lx by the highest level of 'spot-1', goal 200 lx");
 }
 
-TEST(Emittance, SaysWhenNoLightReachesAPoint) {
+TEST(Emittance, ReportsWhenNoLightReachesAPoint) {
   EmittanceProblem p = two_points_one_light();
   p.lux_per_level(1, 0) = 0;
   p.goal_lx = VectorXd{{80, 60}};
@@ -320,7 +320,7 @@ TEST(Emittance, SaysWhenNoLightReachesAPoint) {
   EXPECT_EQ(solution->points[1].binding, Binding::out_of_reach);
 }
 
-TEST(Emittance, SaysWhenItIsTooBrightWithAllLightsOff) {
+TEST(Emittance, ReportsWhenItIsTooBrightWithAllLightsOff) {
   EmittanceProblem p = two_points_one_light();
   p.goal_lx[1] = 10;
   p.fixed_lx = VectorXd{{0, 30}};
@@ -331,7 +331,7 @@ TEST(Emittance, SaysWhenItIsTooBrightWithAllLightsOff) {
   EXPECT_EQ(solution->points[1].reason, "30 lx are there with all its lights off, goal 10 lx");
 }
 
-TEST(Emittance, SaysWhenGoalsWereTraded) {
+TEST(Emittance, ReportsWhenGoalsWereTraded) {
   EmittanceProblem p = two_points_one_light();
   p.goal_lx = VectorXd{{50, 50}};
   const auto solution = solve_emittance(p);
@@ -342,7 +342,7 @@ TEST(Emittance, SaysWhenGoalsWereTraded) {
   EXPECT_TRUE(solution->points[1].limit_points.empty());
 }
 
-TEST(Emittance, CountsPointsAndLightsWithoutNames) {
+TEST(Emittance, NumbersPointsAndLightsWithoutNames) {
   EmittanceProblem p = two_points_one_light();
   p.point_name.clear();
   p.goal_lx[0] = 80;
@@ -352,7 +352,7 @@ TEST(Emittance, CountsPointsAndLightsWithoutNames) {
   EXPECT_EQ(solution->points[0].reason, "held at 40 lx by the limit of 20 lx at point 1, goal 80 lx");
 }
 
-TEST(Emittance, SharesAlikeAmongEqualLightsAndStaysNearWhereAsked) {
+TEST(Emittance, SharesEquallyAmongEqualLightsAndStaysNearAPreference) {
   EmittanceProblem p;
   p.lux_per_level = MatrixXd::Constant(1, 4, 100);
   p.goal_lx = VectorXd::Constant(1, 120);
@@ -366,7 +366,7 @@ TEST(Emittance, SharesAlikeAmongEqualLightsAndStaysNearWhereAsked) {
   EXPECT_LT((solution->level - VectorXd{{0.65, 0.25, 0.05, 0.25}}).norm(), 1e-6);
 }
 
-TEST(Emittance, LeavesLightsOffThatNoGoalNeeds) {
+TEST(Emittance, LeavesUnneededLightsOff) {
   EmittanceProblem p = two_points_one_light();
   auto solution = solve_emittance(p);
   ASSERT_TRUE(solution);
@@ -389,7 +389,7 @@ TEST(Emittance, HandlesNoLightsAndNoPoints) {
   EXPECT_DOUBLE_EQ(solution->normalised_error, 1);
 }
 
-TEST(Emittance, RefusesWhatMakesNoSenseAndNamesThePoint) {
+TEST(Emittance, RefusesInvalidInputAndNamesThePoint) {
   EmittanceProblem p = two_points_one_light();
   p.fixed_lx = VectorXd{{0, 30}};
   p.max_lx[1] = 20;

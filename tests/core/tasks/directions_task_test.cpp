@@ -27,7 +27,7 @@ class DirectionsTask : public ReliefTask {
   }
 };
 
-TEST_F(DirectionsTask, RakeAcrossTheWellFromApartAndAboveTheSlab) {
+TEST_F(DirectionsTask, RakesAcrossTheWellFromSeparatePlacesAboveTheSlab) {
   const Session session = well(std::string(kWellRig) + kDirections);
   const auto found = directions_of(session);
   ASSERT_TRUE(found) << found.error().detail;
@@ -49,7 +49,7 @@ TEST_F(DirectionsTask, RakeAcrossTheWellFromApartAndAboveTheSlab) {
   EXPECT_LE(found->exposed_contrast, 1);
 }
 
-TEST_F(DirectionsTask, LeaveOutWhereAWallStandsNearer) {
+TEST_F(DirectionsTask, AvoidsPlacesBehindANearerWall) {
   const Session walled = well(std::string(kWellRig) + kDirections + kWalls);
   const auto found = directions_of(walled);
   ASSERT_TRUE(found) << found.error().detail;
@@ -69,7 +69,7 @@ TEST_F(DirectionsTask, LeaveOutWhereAWallStandsNearer) {
   EXPECT_LT(found->exposed_contrast, 0.9 * without->exposed_contrast) << "from one side";
 }
 
-TEST_F(DirectionsTask, AreRefusedWhereNothingMayBeHeld) {
+TEST_F(DirectionsTask, IsRefusedWhereNoLightCanBeHeld) {
   const std::string box = "[[scene.object]]\nname = \"case\"\nbox_m = [1.2, 1.2, 1.2]\nposition_m = [0, 0, 0.4]\n";
   const Session cased = well(std::string(kWellRig) + kDirections + box);
   const auto found = directions_of(cased);
@@ -79,7 +79,7 @@ TEST_F(DirectionsTask, AreRefusedWhereNothingMayBeHeld) {
   EXPECT_NE(found.error().detail.find("distance_m"), std::string::npos) << found.error().detail;
 }
 
-TEST_F(DirectionsTask, WithoutANumberAreAsManyAsAreWorthIt) {
+TEST_F(DirectionsTask, ChoosesANumberOfDirectionsUpToItsMaximum) {
   const Session session = well(replaced(std::string(kWellRig) + kDirections, "lights = 2\n", "max_lights = 3\n"));
   const auto found = directions_of(session);
   ASSERT_TRUE(found) << found.error().detail;
@@ -89,7 +89,7 @@ TEST_F(DirectionsTask, WithoutANumberAreAsManyAsAreWorthIt) {
   EXPECT_NEAR(found->exposed_by_count[found->directions.size() - 1], found->exposed_contrast, 1e-12);
 }
 
-TEST_F(DirectionsTask, EndWhenAskedTo) {
+TEST_F(DirectionsTask, StopsWhenAsked) {
   const Session session = well(std::string(kWellRig) + kDirections);
   ComputeOptions options;
   std::stop_source person;
@@ -100,7 +100,7 @@ TEST_F(DirectionsTask, EndWhenAskedTo) {
   EXPECT_EQ(found.error().cause, Cause::cancelled);
 }
 
-TEST_F(DirectionsTask, SetNothingAndAreInThePlanAsItIsReadAgain) {
+TEST_F(DirectionsTask, SetsNoLightAndRoundTripsInThePlan) {
   const Session session = well(std::string(kWellRig) + kDirections);
   const auto solved = solve_tasks(session, transport_of(session, direct_light()), direct_light());
   ASSERT_TRUE(solved) << solved.error().detail;

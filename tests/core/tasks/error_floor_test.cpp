@@ -30,7 +30,7 @@ struct TwoRooms {
   EvaluateOptions options;
 };
 
-TEST(ErrorFloor, IsTheLargestOfFigureShareOfTheMeanAndAThousandthOfTheBrightest) {
+TEST(ErrorFloor, IsTheMaximumOfFixedFloorMeanShareAndPeakShare) {
   EvaluateOptions options;
   const std::vector<double> lux = {0, 100, 500};
   EXPECT_DOUBLE_EQ(error_floor_lx(options, lux), 0.5);
@@ -41,7 +41,7 @@ TEST(ErrorFloor, IsTheLargestOfFigureShareOfTheMeanAndAThousandthOfTheBrightest)
   EXPECT_DOUBLE_EQ(error_floor_lx(options, {}), 30);
 }
 
-TEST(ErrorFloor, ComesFromTheSmallestGoalOrLimitElseFromTheMean) {
+TEST(ErrorFloor, DerivesFromTheSmallestGoalOrLimitElseTheMean) {
   Rig rig;
   rig.points.resize(3);
   EvaluateOptions options;
@@ -56,7 +56,7 @@ TEST(ErrorFloor, ComesFromTheSmallestGoalOrLimitElseFromTheMean) {
   EXPECT_EQ(options.floor_of_mean, 0);
 }
 
-TEST(ErrorFloor, APointThatGetsNextToNothingCostsLittleAndItsErrorIsWithinTheFloor) {
+TEST(ErrorFloor, ANearlyDarkPointIsCheapAndWithinTheFloor) {
   TwoRooms rooms;
   const auto path = make_path_evaluator(*rooms.rays);
   const auto without = path->evaluate(rooms.receivers, rooms.emitters, rooms.options);
@@ -71,7 +71,7 @@ TEST(ErrorFloor, APointThatGetsNextToNothingCostsLittleAndItsErrorIsWithinTheFlo
   EXPECT_GT(error[6], 0.01 * with->lux_per_level(6, 0)) << "it is known less closely, and says so";
 }
 
-TEST(Enough, EndsEveryEvaluatorWithWhatItHasAndTheErrorThatThatHas) {
+TEST(Enough, EndsEveryEvaluatorWithItsResultAndThatResultsError) {
   TwoRooms rooms;
   rooms.emitters[0].shape = {LuminousShape::Kind::sphere, Vec3(0.2, 0, 0)};
   std::stop_source enough;
@@ -92,7 +92,7 @@ TEST(Enough, EndsEveryEvaluatorWithWhatItHasAndTheErrorThatThatHas) {
   }
 }
 
-TEST(Enough, InTheMiddleOfTheWorkGivesAnAnswerThatAgreesWithTheFullOne) {
+TEST(Enough, MidwayGivesAResultThatAgreesWithTheFullOne) {
   TwoRooms rooms;
   const auto path = make_path_evaluator(*rooms.rays);
   rooms.options.floor_lx = 5;

@@ -31,25 +31,25 @@ std::string chosen(double reflectance, std::size_t receivers, double wanted) {
   return std::string(choice->evaluator->name());
 }
 
-TEST(EvaluatorChoice, NothingThatReflectsNeedsNoPaths) {
+TEST(EvaluatorChoice, ABlackSceneNeedsNoPaths) {
   EXPECT_EQ(chosen(0, 5, 0.01), "direct");
   const RayScene open_air{Scene{}};
   EXPECT_EQ(choose_evaluator(open_air, receivers_in_cube(5), kBulb, {})->evaluator->name(), "direct");
 }
 
-TEST(EvaluatorChoice, ReflectedLightBelowTheWantedErrorIsLeftOut) {
+TEST(EvaluatorChoice, ReflectedLightBelowTheWantedErrorIsIgnored) {
   EXPECT_EQ(chosen(0.002, 30, 0.05), "direct");
   EXPECT_NE(chosen(0.09, 30, 0.01), "direct") << "a tenth of the light is not below one per cent";
 }
 
-TEST(EvaluatorChoice, ManyPointsShareUnlessTheErrorIsTooFineForIt) {
+TEST(EvaluatorChoice, ManyPointsSharePathsUnlessTheErrorIsTooFine) {
   EXPECT_EQ(chosen(0.5, 100, 0.01), "gather");
   EXPECT_EQ(chosen(0.5, 100, 0.003), "gather") << "a standard error of 0.0012";
   EXPECT_EQ(chosen(0.5, 100, 0.001), "path");
   EXPECT_EQ(chosen(0.5, 3, 0.01), "path");
 }
 
-TEST(EvaluatorChoice, WhatIsChosenKeepsTheWantedError) {
+TEST(EvaluatorChoice, TheChosenEvaluatorKeepsTheWantedError) {
   const RayScene scene(make_cube(2, 0.05));
   const auto receivers = receivers_in_cube(40);
   EvaluateOptions reference;
@@ -69,7 +69,7 @@ TEST(EvaluatorChoice, WhatIsChosenKeepsTheWantedError) {
 }
 
 // Few rays decide whether reflected light matters, however small the final error over all receivers is to be.
-TEST(EvaluatorChoice, IsMadeByAFewRaysUnderAWantedRmsErrorToo) {
+TEST(EvaluatorChoice, NeedsOnlyAFewRaysEvenForASmallRmsError) {
   const RayScene scene(make_cube(2, 0.05));
   EvaluateOptions options;
   options.wanted_rms_error = 1e-7;

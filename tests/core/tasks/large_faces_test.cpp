@@ -72,7 +72,7 @@ TEST(LargeFaces, AreCutWithoutGapsOverlapsOrLongEdges) {
   }
 }
 
-TEST(LargeFaces, SmallOnesAndFarOnesStayAsTheyAre) {
+TEST(LargeFaces, SmallAndFarOnesStayUncut) {
   const PlacedMesh room = closed_box({14, 14, 3}, Mat3::Identity(), {3, 0, 0});
   PlacedMesh cut = room;
   ASSERT_TRUE(cut_large_faces(Vec3::Zero(), cut));
@@ -95,7 +95,7 @@ INSTANTIATE_TEST_SUITE_P(OfAnySize, OnGround,
                                          Ground{20'000, {3000, -9000, 0}, {0, 0, 0}},
                                          Ground{20'000, {3000, -9000, 0}, {654'321.7, 5'432'101.3, 412.3}}));
 
-TEST_P(OnGround, ASheetAMillimetreBelowALampKeepsItsLightBack) {
+TEST_P(OnGround, ASheetAMillimetreBelowALampBlocksItsLight) {
   const auto& [size_m, aside_m, at_m] = GetParam();
   const Rig rig = room_on_ground(size_m, aside_m, at_m, 0.001);
   const auto scene = build_scene(rig);
@@ -110,7 +110,7 @@ TEST_P(OnGround, ASheetAMillimetreBelowALampKeepsItsLightBack) {
   EXPECT_NEAR(below->distance_m, 0.0009, 1e-5);
 }
 
-TEST_P(OnGround, CornersOfTheRoomAreWhereTheRigSaysToAMicrometre) {
+TEST_P(OnGround, RoomCornersMatchTheRigToAMicrometre) {
   const auto& [size_m, aside_m, at_m] = GetParam();
   const auto scene = build_scene(room_on_ground(size_m, aside_m, at_m, 0.001));
   ASSERT_TRUE(scene.has_value());
@@ -122,7 +122,7 @@ TEST_P(OnGround, CornersOfTheRoomAreWhereTheRigSaysToAMicrometre) {
   EXPECT_LT((east.max() - at_m - Vec3(3.1, 2.5, 3)).norm(), 1e-6);
 }
 
-TEST_P(OnGround, OfOneThingFarOffNothingIsMoved) {
+TEST_P(OnGround, AFarOutlierDoesNotMoveTheOrigin) {
   const auto& [size_m, aside_m, at_m] = GetParam();
   Rig rig = room_on_ground(size_m, aside_m, at_m, 0.001);
   rig.fixtures.insert(rig.fixtures.begin(), 2, rig.fixtures.front());
@@ -132,7 +132,7 @@ TEST_P(OnGround, OfOneThingFarOffNothingIsMoved) {
   EXPECT_LT((scene->origin_world_m - at_m).norm(), 10);
 }
 
-TEST_P(OnGround, WithoutAnythingHungItIsWhereMostCornersAre) {
+TEST_P(OnGround, WithoutFixturesTheOriginIsWhereMostCornersAre) {
   const auto& [size_m, aside_m, at_m] = GetParam();
   Rig rig = room_on_ground(size_m, aside_m, at_m, 0.001);
   rig.fixtures.clear();

@@ -40,7 +40,7 @@ class KeptLight : public testing::Test {
   TransportMatrix before_;
 };
 
-TEST_F(KeptLight, WhereNothingTurnsNoRayIsCast) {
+TEST_F(KeptLight, CastsNoRayWhenNothingTurns) {
   ModelUsed used;
   const TransportMatrix again = light(hung_, true, &used);
   EXPECT_EQ(again.rays, 0u);
@@ -49,7 +49,7 @@ TEST_F(KeptLight, WhereNothingTurnsNoRayIsCast) {
   EXPECT_EQ(used.name, "kept");
 }
 
-TEST_F(KeptLight, OnlyTheFixtureThatTurnsIsComputed) {
+TEST_F(KeptLight, ComputesOnlyTheTurnedFixture) {
   options_.max_error = 0.02;  // the known light is twice as exact
   Look turned = hung_;
   turned.joints[1].tilt_rad += 0.4;
@@ -64,7 +64,7 @@ TEST_F(KeptLight, OnlyTheFixtureThatTurnsIsComputed) {
   expect_alike(some, all, Eigen::VectorXd::Unit(3, 1));
 }
 
-TEST_F(KeptLight, ThatIsNearlyExactEnoughIsMadeSoByASecondEstimate) {
+TEST_F(KeptLight, NearlyExactLightIsRefinedByASecondEstimate) {
   options_.model = Model::path;
   options_.max_error = 0.01;
   before_ = transport_of(session_, options_);
@@ -80,7 +80,7 @@ TEST_F(KeptLight, ThatIsNearlyExactEnoughIsMadeSoByASecondEstimate) {
   for (Eigen::Index e = 0; e < 3; ++e) expect_alike(some, all, Eigen::VectorXd::Unit(3, e));
 }
 
-TEST_F(KeptLight, ThatIsNotExactEnoughIsComputedAgain) {
+TEST_F(KeptLight, InexactLightIsComputedAgain) {
   ComputeOptions coarse = options_;
   coarse.model = options_.model = Model::path;
   coarse.max_error = 0.2;
@@ -95,7 +95,7 @@ TEST_F(KeptLight, ThatIsNotExactEnoughIsComputedAgain) {
   EXPECT_NE(anew.lux_per_level.col(2), before_.lux_per_level.col(2));
 }
 
-TEST_F(KeptLight, OfAnyLooksAndLevelsIsAsExactAsWantedAndLikeThatComputedAfresh) {
+TEST_F(KeptLight, MatchesFreshlyComputedLightForAnyLook) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> turn(-1, 1), level(0, 1);
   for (int i = 0; i < 20; ++i) {
@@ -131,7 +131,7 @@ TEST(KeptLightOfALargerRig, DaylightIsKeptWhenALampIsHung) {
   EXPECT_GT(with->lux_per_level.col(3).maxCoeff(), 0);
 }
 
-TEST(LightOf, NothingThatShinesIsNoColumn) {
+TEST(LightOf, NoEmittersHasNoColumns) {
   const Session session = opened(room_text());
   EvaluateOptions wanted;
   wanted.colour = true;

@@ -90,7 +90,7 @@ Eigen::AlignedBox3d bounds_of_scene(const Scene& scene) {
 
 const std::string kFixture = R"(<Fixture name="par"/>)";
 
-TEST(MvrScenery, ModelsOf3dStudioAreInMillimetresAndStandWhereTheirMatricesSay) {
+TEST(MvrScenery, ModelsOf3dStudioUseMillimetresAndTheirMatrices) {
   // 1 by 2 m in x and y, turned by a quarter about z, at (5, 0, 3), in a group that stands 1 m higher.
   const Imported got = imported_from(
       mvr_of("",
@@ -107,7 +107,7 @@ TEST(MvrScenery, ModelsOf3dStudioAreInMillimetresAndStandWhereTheirMatricesSay) 
   EXPECT_NEAR(got.scene.materials[0].luminous_reflectance(), 0.2159, 1e-4);
 }
 
-TEST(MvrScenery, ModelsOfGltfAreInMetresWithYUpAndSymbolsStandInAllTheirPlaces) {
+TEST(MvrScenery, ModelsOfGltfUseMetresWithYUpAndSymbolsRepeat) {
   test::GltfMaker gltf = test::GltfMaker::square();  // 1 m in x and in y, which is up
   gltf.root["materials"][0]["pbrMetallicRoughness"] = {{"baseColorFactor", {0.3, 0.3, 0.3, 1}}};
   const Imported got = imported_from(mvr_of(
@@ -149,7 +149,7 @@ TEST(MvrScenery, ATheatreByAnotherProgramIsImportedWhole) {
   EXPECT_TRUE(textured);
 }
 
-TEST(MvrScenery, ASymbolThatHoldsItselfEnds) {
+TEST(MvrScenery, ARecursiveSymbolTerminates) {
   const Imported got = imported_from(mvr_of(
       R"(<Symdef uuid="s"><ChildList><Symbol symdef="s"/><Symbol symdef="s"/><Geometry3D fileName="deck.3ds"/></ChildList></Symdef>)",
       R"(<SceneObject name="a"><Geometries><Symbol symdef="s"/></Geometries></SceneObject>)" + kFixture,

@@ -30,7 +30,7 @@ Scene room_with_two() {
   return scene.value_or(Scene{});
 }
 
-TEST(ObjectScene, HoldsTheObjectAloneWhereItStands) {
+TEST(ObjectScene, HoldsOnlyTheObjectInItsPlace) {
   const Scene scene = room_with_two();
   const auto vase = object_scene(scene, "vase");
   ASSERT_TRUE(vase.has_value());
@@ -46,7 +46,7 @@ TEST(ObjectScene, HoldsTheObjectAloneWhereItStands) {
   EXPECT_LT((vase->origin_world_m - bounds.center()).norm(), 1e-6);
 }
 
-TEST(ObjectScene, AndTheRestTogetherAreTheWhole) {
+TEST(ObjectScene, TogetherWithTheRestIsTheWhole) {
   const Scene scene = room_with_two();
   for (const std::string& name : scene.object_names) {
     const auto object = object_scene(scene, name), rest = scene_without_object(scene, name);
@@ -69,7 +69,7 @@ TEST(ObjectScene, AndTheRestTogetherAreTheWhole) {
   }
 }
 
-TEST(ObjectScene, OfAnUnknownNameSaysTheNearest) {
+TEST(ObjectScene, SuggestsTheNearestNameForAnUnknownOne) {
   const Scene scene = room_with_two();
   const auto none = object_scene(scene, "vace");
   ASSERT_FALSE(none.has_value());

@@ -111,7 +111,7 @@ class StopsAt {
   std::stop_source person_;
 };
 
-TEST_F(AimTask, TurnsHeadsThatLookPastAnObjectTowardsIt) {
+TEST_F(AimTask, TurnsHeadsTowardsAnObjectTheyMiss) {
   const Session session = well(std::string(kWellRig) + kAim);
   const SolvedTasks solved = solved_of(session, direct_light());
   const Eigen::VectorXd levels = levels_of(solved);
@@ -141,7 +141,7 @@ TEST_F(AimTask, TurnsHeadsThatLookPastAnObjectTowardsIt) {
   EXPECT_NEAR(solved.plan.points[0].lux, by_hand_lx, 1e-6 * by_hand_lx);
 }
 
-TEST_F(AimTask, ShowsAWellBetterThanBothHeadsOnItsMiddleAtFullLevel) {
+TEST_F(AimTask, ShowsAWellBetterThanBothHeadsAtFullOnItsCentre) {
   std::string rig = kWellRig;
   for (int head = 0; head < 2; ++head) rig = replaced(rig, "pan_deg = 0\ntilt_deg = 0", "aim_m = [0, 0, 1]");
   const Session session = well(rig + replaced(kAim, "contrast = \"lux\"", "contrast = \"relative\"\nbase_lx = 50"));
@@ -154,7 +154,7 @@ TEST_F(AimTask, ShowsAWellBetterThanBothHeadsOnItsMiddleAtFullLevel) {
   EXPECT_GT(relief.relative_contrast, 1.1 * *relief.before_relative_contrast);
 }
 
-TEST_F(AimTask, KeepsTheLimitOfAPointThatItWouldElseBreak) {
+TEST_F(AimTask, KeepsAPointLimitThatItWouldOtherwiseBreak) {
   const Session free = well(std::string(kWellRig) + kAim), limited = well(with_limit(kWellRig, 40) + kAim);
   EXPECT_GT(solved_of(free, direct_light()).plan.points[0].lux, 60);
   const SolvedTasks solved = solved_of(limited, direct_light());
@@ -166,7 +166,7 @@ TEST_F(AimTask, KeepsTheLimitOfAPointThatItWouldElseBreak) {
   EXPECT_TRUE(solved.plan.limits[0].met);
 }
 
-TEST_F(AimTask, KeepsRecessedPlacesWithinTheLimitOfTheObjectWithReflectedLightToo) {
+TEST_F(AimTask, KeepsRecessesWithinTheObjectLimitIncludingReflections) {
   // White walls around the slab reflect the light that passes it.
   std::string rig = replaced(kWellRig, "[0.35, 0, 1.1]", "[0, 0, 1.6]");
   int walls = 0;
@@ -188,7 +188,7 @@ TEST_F(AimTask, KeepsRecessedPlacesWithinTheLimitOfTheObjectWithReflectedLightTo
   EXPECT_GT(all.max_recessed_lx(), 1.1 * direct.max_recessed_lx()) << "the walls give something";
 }
 
-TEST_F(AimTask, GivesAnEyeNoMoreDirectLightThanItMayHave) {
+TEST_F(AimTask, KeepsTheDirectLightLimitOfAnEye) {
   // An eye on the line from the left head to the well, with nothing that would hide it.
   const Vec3 eye = (Vec3(-1.2, 0.3, 2.8) + kWellMiddle) / 2;
   const std::string point = fmt::format("[[point]]\nname = \"eye\"\nposition_m = [{}, {}, {}]\nnormal = [0, 0, 1]\n",
@@ -207,7 +207,7 @@ TEST_F(AimTask, GivesAnEyeNoMoreDirectLightThanItMayHave) {
   EXPECT_LE(at_eye_lx("eyes = [\"eye\"]\nmax_eye_lx = 50\n"), 50 * (1 + 1e-6));
 }
 
-TEST_F(AimTask, LeavesAHeadDarkAndUnturnedWhoseWayToTheObjectIsKeptOut) {
+TEST_F(AimTask, LeavesAHeadDarkAndUnturnedBehindAKeepOutZone) {
   const Session session = well(std::string(kWellRig) + kAim +
                                "[[keep_out]]\nname = \"mirror\"\ncentre_m = [-0.6, 0.15, 1.9]\nradius_m = 0.1\n"
                                "heads = [\"left\"]\n");
@@ -218,7 +218,7 @@ TEST_F(AimTask, LeavesAHeadDarkAndUnturnedWhoseWayToTheObjectIsKeptOut) {
   EXPECT_LT(off_beam_deg(turned(solved).fixtures[1], kWellMiddle), 10);
 }
 
-TEST_F(AimTask, StoppedWhileItAimsGivesItsBestSoFarWithinLimitsAndLeavesOutTheTasksAfterIt) {
+TEST_F(AimTask, StoppedWhileAimingGivesItsBestSoFarAndSkipsLaterTasks) {
   const Session session = well(with_limit(kWellRig, 40) + kAim + "[[task]]\nname = \"levels\"\nkind = \"emittance\"\n");
   const TransportMatrix transport = transport_of(session, direct_light());
   const auto whole = solve_tasks(session, transport, direct_light());
@@ -242,7 +242,7 @@ TEST_F(AimTask, StoppedWhileItAimsGivesItsBestSoFarWithinLimitsAndLeavesOutTheTa
   EXPECT_NEAR(solved->plan.points[0].lux, lux[0], 1e-9 * lux[0]);
 }
 
-TEST_F(AimTask, StoppedBeforeItAimsIsCancelledAndTheNextTryIsAsIfNothingHadBeen) {
+TEST_F(AimTask, StoppedBeforeAimingIsCancelledAndLeavesNoTrace) {
   // A bulb that the aim leaves unchanged, so its light is computed first.
   const Session session = well(replaced(kWellRig, "[[point]]\n", R"([[fixture]]
 name = "bulb"
@@ -298,13 +298,13 @@ TEST_F(AimTask, IsRefusedWhenItsCameraSeesNoneOfTheRelief) {
             "object \"slab\": camera \"cellar\" sees none of its recessed places");
 }
 
-TEST_F(AimTask, IsRefusedOfAFlatObject) {
+TEST_F(AimTask, IsRefusedForAFlatObject) {
   flatten();
   const std::string said = refusal_of(std::string(kWellRig) + kAim);
   EXPECT_TRUE(said.starts_with("object \"slab\": the target")) << said;
 }
 
-TEST_F(HighlightTask, HangsLightsUnderTheCeilingThatShowAWellBetterThanLightsStraightAboveIt) {
+TEST_F(HighlightTask, HangsCeilingLightsThatBeatLightsStraightAboveAWell) {
   const Session session = well(std::string(kWellRig) + kHighlight);
   const SolvedTasks solved = solved_of(session, direct_light());
   ASSERT_EQ(solved.plan.tasks.size(), 1);
@@ -332,7 +332,7 @@ TEST_F(HighlightTask, HangsLightsUnderTheCeilingThatShowAWellBetterThanLightsStr
             1.5 * WellLight(session, above, levels, direct_light()).contrast());
 }
 
-TEST_F(HighlightTask, KeepsTheLimitsOfAPointAndOfTheObjectThatItWouldElseBreak) {
+TEST_F(HighlightTask, KeepsPointAndObjectLimitsThatItWouldOtherwiseBreak) {
   const auto light_of = [&](const std::string& rig, double& beside_lx) {
     const Session session = well(rig);
     const SolvedTasks solved = solved_of(session, direct_light());
@@ -355,7 +355,7 @@ TEST_F(HighlightTask, KeepsTheLimitsOfAPointAndOfTheObjectThatItWouldElseBreak) 
   EXPECT_LE(of_both.max_recessed_lx(), 1.03 * 120);
 }
 
-TEST_F(HighlightTask, TakesTheNumberOfLightsThatNoFewerOutdoAndListsTheOthers) {
+TEST_F(HighlightTask, TakesTheBestNumberOfLightsAndListsTheOthers) {
   const Session session = well(std::string(kWellRig) + replaced(kHighlight, "lights = 2\n", "max_lights = 3\n"));
   const SolvedTasks solved = solved_of(session, direct_light());
   const PlannedTask& task = solved.plan.tasks[0];
@@ -371,7 +371,7 @@ TEST_F(HighlightTask, TakesTheNumberOfLightsThatNoFewerOutdoAndListsTheOthers) {
   }
 }
 
-TEST_F(HighlightTask, StoppedWhileItAimsHangsItsBestSoFarWithinLimitsAndLeavesOutTheTasksAfterIt) {
+TEST_F(HighlightTask, StoppedWhileAimingHangsItsBestSoFarAndSkipsLaterTasks) {
   const Session session =
       well(with_limit(kWellRig, 40) + kHighlight + "[[task]]\nname = \"levels\"\nkind = \"emittance\"\n");
   const TransportMatrix transport = transport_of(session, direct_light());
@@ -390,7 +390,7 @@ TEST_F(HighlightTask, StoppedWhileItAimsHangsItsBestSoFarWithinLimitsAndLeavesOu
   EXPECT_NEAR(solved->plan.points[0].lux, lux[0], 1e-9 * lux[0]);
 }
 
-TEST_F(HighlightTask, StoppedBeforeItHasLightsGivesNoPlanAndTheNextTryIsAsIfNothingHadBeen) {
+TEST_F(HighlightTask, StoppedBeforeItHasLightsGivesNoPlanAndLeavesNoTrace) {
   const Session session = well(std::string(kWellRig) + kHighlight);
   const TransportMatrix transport = transport_of(session, direct_light());
   for (const char* what : {"looking for shadow edges", "asking where lights may hang", "judging lights"}) {
@@ -406,13 +406,13 @@ TEST_F(HighlightTask, StoppedBeforeItHasLightsGivesNoPlanAndTheNextTryIsAsIfNoth
   EXPECT_EQ(text_of(before->plan), text_of(solved_of(well(std::string(kWellRig) + kHighlight), direct_light()).plan));
 }
 
-TEST_F(HighlightTask, IsRefusedWhenLightsMayHangNowhere) {
+TEST_F(HighlightTask, IsRefusedWhenLightsCanHangNowhere) {
   const std::string said = refusal_of(std::string(kWellRig) + kHighlight + "clearance_m = 5\n");
   EXPECT_TRUE(said.starts_with("task \"detail\": lights may hang at none of ")) << said;
   EXPECT_TRUE(said.ends_with("widen box_m or offset_m of [mounting], or lower clearance_m")) << said;
 }
 
-TEST_F(HighlightTask, IsRefusedWhenNoLightThatMayHangReachesTheRelief) {
+TEST_F(HighlightTask, IsRefusedWhenNoPossibleLightReachesTheRelief) {
   const std::string lid = "[[scene.object]]\nname = \"lid\"\nbox_m = [3, 3, 0.02]\nposition_m = [0, 0, 1.12]\n";
   const std::string said = refusal_of(replaced(kWellRig, "[0.35, 0, 1.1]", "[0.35, 0, 1.3]") + lid + kHighlight);
   EXPECT_TRUE(said.starts_with("task \"detail\": no shadow edge of the target can be lit from the light domain"))
@@ -424,7 +424,7 @@ TEST_F(HighlightTask, IsRefusedWhenDaylightAloneIsAboveALimit) {
   EXPECT_NE(said.find("lx of daylight alone, its limit is 40 lx"), std::string::npos) << said;
 }
 
-TEST_F(HighlightTask, IsRefusedOfAFlatObject) {
+TEST_F(HighlightTask, IsRefusedForAFlatObject) {
   flatten();
   const std::string said = refusal_of(std::string(kWellRig) + kHighlight);
   EXPECT_TRUE(said.starts_with("object \"slab\": the target")) << said;
@@ -443,7 +443,7 @@ TEST_F(HighlightTask, StoppedBeforeItHasLightsIsCancelledNotRefused) {
   }
 }
 
-TEST_F(AimTask, StoppedWhileItsObjectIsStudiedIsCancelledNotRefused) {
+TEST_F(AimTask, StoppedWhileStudyingItsObjectIsCancelledNotRefused) {
   const Session session = well(std::string(kWellRig) + kAim);
   const TransportMatrix transport = transport_of(session, direct_light());
   std::stop_source person;
@@ -455,7 +455,7 @@ TEST_F(AimTask, StoppedWhileItsObjectIsStudiedIsCancelledNotRefused) {
   EXPECT_EQ(solved.error().cause, Cause::cancelled) << solved.error().detail;
 }
 
-TEST_F(AimTask, StoppedWhileItAimsWithALimitOfTheObjectGivesItsBestSoFar) {
+TEST_F(AimTask, StoppedWhileAimingWithAnObjectLimitGivesItsBestSoFar) {
   const Session session = well(std::string(kWellRig) + kAim + "max_object_lx = 150\n");
   const TransportMatrix transport = transport_of(session, direct_light());
   ComputeOptions options = direct_light();
@@ -465,7 +465,7 @@ TEST_F(AimTask, StoppedWhileItAimsWithALimitOfTheObjectGivesItsBestSoFar) {
   ASSERT_TRUE(solved) << solved.error().detail;
 }
 
-TEST_F(HighlightTask, StoppedWhileItAimsWithALimitOfTheObjectGivesItsBestSoFar) {
+TEST_F(HighlightTask, StoppedWhileAimingWithAnObjectLimitGivesItsBestSoFar) {
   const Session session =
       well(std::string(kWellRig) + replaced(kHighlight, "lights = 2\n", "lights = 2\nmax_object_lx = 150\n"));
   const TransportMatrix transport = transport_of(session, direct_light());
@@ -489,7 +489,7 @@ TEST_F(AimTask, KeepsTheWholeObjectWithinItsLimit) {
   EXPECT_LE(WellLight(session, turned(solved), levels_of(solved), direct_light()).max_lx(), 1.08 * 120);
 }
 
-TEST_F(AimTask, LightsTheObjectInADarkRoomWithTheContrastThatIsTheDefault) {
+TEST_F(AimTask, LightsAnObjectInADarkRoomWithTheDefaultContrast) {
   const Session session = well(std::string(kWellRig) + replaced(kAim, "contrast = \"lux\"\n", ""));
   const SolvedTasks solved = solved_of(session, direct_light());
   EXPECT_GT(WellLight(session, turned(solved), levels_of(solved), direct_light()).mean_lx(), 10);

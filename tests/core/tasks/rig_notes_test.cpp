@@ -89,7 +89,7 @@ class RigNotes : public testing::Test {
   Rig rig;
 };
 
-TEST_F(RigNotes, NothingIsSaidOfARigThatFitsItsScene) { EXPECT_TRUE(notes().empty()) << notes()[0].text(); }
+TEST_F(RigNotes, ARigThatFitsItsSceneHasNone) { EXPECT_TRUE(notes().empty()) << notes()[0].text(); }
 
 TEST_F(RigNotes, AFixtureBehindTheWallIsNoted) {
   rig.fixtures[1].world_from_mount.translation_m = Vec3(8, 2.5, 2.8);
@@ -108,7 +108,7 @@ TEST_F(RigNotes, LampsAboutALoneObjectAreNotOutside) {
   EXPECT_TRUE(notes().empty()) << notes()[0].text();
 }
 
-TEST_F(RigNotes, AGroundOfTwentyKilometresHidesNothingThatIsOutsideOfTheRoom) {
+TEST_F(RigNotes, AHugeGroundHidesNothingOutsideTheRoom) {
   add_ground();
   EXPECT_TRUE(notes().empty()) << notes()[0].text();
   rig.fixtures[1].world_from_mount.translation_m = Vec3(500, 2.5, 2.8);
@@ -120,13 +120,13 @@ TEST_F(RigNotes, AGroundOfTwentyKilometresHidesNothingThatIsOutsideOfTheRoom) {
   expect_one(21, {"point \"desk 2\"", "0.50 m outside of the scene"});
 }
 
-TEST_F(RigNotes, OnOpenGroundWhatStandsAboutALoneObjectIsNotOutside) {
+TEST_F(RigNotes, LampsAroundALoneObjectOnOpenGroundAreNotOutside) {
   rig.scene.mesh.reset();
   add_ground();
   EXPECT_TRUE(notes().empty()) << notes()[0].text();
 }
 
-TEST_F(RigNotes, ARoomOnItsGroundThatIsReadWithTheWrongAxisUpIsNoted) {
+TEST_F(RigNotes, ARoomOnGroundReadWithTheWrongUpAxisIsNoted) {
   write_room(1.0, false);
   std::ofstream(file_, std::ios::app) << "v -10000 -10000 -0.01\nv 10000 -10000 -0.01\nv 10000 10000 -0.01\n"
                                          "v -10000 10000 -0.01\nf 9 10 11 12\n";
@@ -135,7 +135,7 @@ TEST_F(RigNotes, ARoomOnItsGroundThatIsReadWithTheWrongAxisUpIsNoted) {
   expect_one(rig.scene.in_file.line, {"set up_axis = \"z\" in [scene]"});
 }
 
-TEST_F(RigNotes, TheRoomOfARigIsWithoutItsGround) {
+TEST_F(RigNotes, TheRoomOfARigExcludesItsGround) {
   add_ground();
   const auto scene = build_scene(rig);
   ASSERT_TRUE(scene);
@@ -156,23 +156,23 @@ TEST_F(RigNotes, APointRightBehindAWallIsNoted) {
                   "its goal is 300 lx", "move it along its normal"});
 }
 
-TEST_F(RigNotes, APointThatLooksAtAWallACentimetreAwayIsNoted) {
+TEST_F(RigNotes, APointFacingAWallACentimetreAwayIsNoted) {
   rig.points[2].position_world_m = Vec3(5.99, 2.5, 1.5);
   rig.points[2].normal_world = Vec3::UnitX();
   expect_one(22, {"point \"desk 3\" faces", "10.0 mm before it", "turn its normal"});
 }
 
-TEST_F(RigNotes, ALuxmeterInsideOfAnObjectIsNoted) {
+TEST_F(RigNotes, ALuxmeterInsideAnObjectIsNoted) {
   rig.luxmeters[0].position_world_m = Vec3(4.5, 3.5, 0.8);
   expect_one(30, {"luxmeter \"meter\" is inside of object \"plinth\", 0.20 m below its surface"});
 }
 
-TEST_F(RigNotes, APointOutsideOfTheRoomIsNoted) {
+TEST_F(RigNotes, APointOutsideTheRoomIsNoted) {
   rig.points[1].position_world_m = Vec3(6.5, 2.5, 0.8);
   expect_one(21, {"point \"desk 2\" is at 6.500 2.500 0.800, 0.50 m outside of the scene", "gets 0 lx"});
 }
 
-TEST_F(RigNotes, APointThatNoLampReachesIsNotedAndOneThatReflectedLightReachesIsNot) {
+TEST_F(RigNotes, OnlyPointsReachedByNeitherLampsNorReflectionsAreNoted) {
   rig.points[1].position_world_m = Vec3(3, 2.5, 2.95);
   rig.points[1].normal_world = Vec3::UnitZ();  // looks at the ceiling, which only reflects
   EXPECT_TRUE(notes().empty()) << notes()[0].text();
@@ -182,7 +182,7 @@ TEST_F(RigNotes, APointThatNoLampReachesIsNotedAndOneThatReflectedLightReachesIs
              {"point \"desk 2\" gets 0 lx with every lamp at full level, its goal is 300 lx", "no lamp is in sight"});
 }
 
-TEST_F(RigNotes, LightThatIsYetToBePlacedMayReachAnything) {
+TEST_F(RigNotes, LightsYetToBePlacedMayReachAnyPoint) {
   rig.points[1].position_world_m = Vec3(3, 2.5, 2.9);
   rig.points[1].normal_world = Vec3::UnitZ();
   rig.scene.default_reflectance_rgb.setZero();
@@ -192,7 +192,7 @@ TEST_F(RigNotes, LightThatIsYetToBePlacedMayReachAnything) {
   EXPECT_TRUE(notes().empty()) << notes()[0].text();
 }
 
-TEST_F(RigNotes, AMeshWithZUpThatIsReadWithYUpIsNotedAndTheOtherWayRound) {
+TEST_F(RigNotes, AMeshReadWithTheWrongUpAxisIsNoted) {
   rig.scene.in_file = {3, 1};
   rig.scene.objects.clear();
   rig.scene.mesh->up_axis = UpAxis::y;
@@ -215,7 +215,7 @@ TEST_F(RigNotes, AMeshInAnotherUnitIsNoted) {
   expect_one(3, {"0.0060 x 0.0050 x 0.0030 m in size, far too small", "set unit = \"m\"", "6.00 x 5.00 x 3.00 m"});
 }
 
-TEST_F(RigNotes, AMeshInMetresReadAsFeetIsNotedWhereAllPointsAreOutsideOfIt) {
+TEST_F(RigNotes, AMeshInMetresReadAsFeetIsNotedWhenAllPointsLieOutside) {
   rig.scene.in_file = {3, 1};
   rig.scene.objects.clear();
   rig.scene.mesh->metres_per_unit = 0.3048;  // 1.8 x 1.5 x 0.9 m: not far too small, and in the open all are in sight
@@ -239,7 +239,7 @@ TEST_F(RigNotes, ARigInOtherCoordinatesThanItsSceneIsNoted) {
                  "the mesh moved by about"});
 }
 
-TEST_F(RigNotes, ALampAFewMillimetresFromAPointIsNotedAndOneInItRefused) {
+TEST_F(RigNotes, ALampNearAPointIsNotedAndOneInItIsRefused) {
   EXPECT_TRUE(lamps_in_points(rig).empty());
   rig.fixtures[2].world_from_mount.translation_m = rig.points[2].position_world_m + Vec3(0, 0, 0.005);
   EXPECT_TRUE(lamps_in_points(rig).empty());
@@ -252,7 +252,7 @@ TEST_F(RigNotes, ALampAFewMillimetresFromAPointIsNotedAndOneInItRefused) {
       << refused[0].text();
 }
 
-TEST_F(RigNotes, ManyOfAKindAreOneNoteAtTheEnd) {
+TEST_F(RigNotes, ManyOfAKindAreSummedUpInOne) {
   for (int i = 0; i < 30; ++i) {
     rig.points.push_back(rig.points[0]);
     rig.points.back().name = "lost " + std::to_string(i);

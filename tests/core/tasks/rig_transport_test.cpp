@@ -48,7 +48,7 @@ TEST(RigTransport, EmittersHaveTheShapeAndColourOfTheirLuminaire) {
   EXPECT_EQ(emitters[0].colour_rgb, Vec3::Ones());
 }
 
-TEST(RigTransport, ATiltedLampGivesWhatItsFactorsSay) {
+TEST(RigTransport, ATiltedLampFollowsItsTiltFactors) {
   Rig rig = small_rig();
   rig.luminaires[0].tilt = LampTilt{3, {0, 90, 180}, {0.8, 0.6, 0.4}};
   rig.luminaires[1].tilt = rig.luminaires[0].tilt;
@@ -59,7 +59,7 @@ TEST(RigTransport, ATiltedLampGivesWhatItsFactorsSay) {
   EXPECT_NEAR(emitters_of(rig)[0].intensity->flux_lm(), 200 * 0.5 / 0.8, 1e-9);
 }
 
-TEST(RigTransport, DaylightIsASkyAndASunOfTheirOwn) {
+TEST(RigTransport, DaylightIsASeparateSkyAndSun) {
   Rig rig;
   EXPECT_TRUE(daylight_emitters_of(rig).empty());
   rig.daylight = Daylight{};
@@ -83,7 +83,7 @@ TEST(RigTransport, DaylightIsASkyAndASunOfTheirOwn) {
   EXPECT_GT(daylight_emitters_of(rig)[0].sky->luminance_cd_m2(Vec3(0, 0.6, 0.8)), 1e6);
 }
 
-TEST(RigTransport, DaylightStandsAfterTheFixturesAndIsAlwaysThere) {
+TEST(RigTransport, DaylightFollowsTheFixturesAndIsAlwaysOn) {
   Rig rig = small_rig();
   EXPECT_EQ(all_emitters_of(rig).size(), 3u);
   rig.daylight = Daylight{};
@@ -110,7 +110,7 @@ TEST(RigTransport, ReceiversArePointsThenLuxmeters) {
   EXPECT_EQ(receivers[2].normal_world, -Vec3::UnitZ());
 }
 
-TEST(RigTransport, AnEmptyRigHasNeither) {
+TEST(RigTransport, AnEmptyRigHasNoEmittersAndNoReceivers) {
   EXPECT_TRUE(emitters_of(Rig{}).empty());
   EXPECT_TRUE(receivers_of(Rig{}).empty());
 }

@@ -63,7 +63,7 @@ TEST(SceneBuilder, AnEmptyRigGivesAnEmptyScene) {
   EXPECT_TRUE(RayScene(*scene).bounds_world_m().isEmpty());
 }
 
-TEST(SceneBuilder, PutsTheRoomWhereItsFileSays) {
+TEST(SceneBuilder, PlacesTheRoomAsItsFileStates) {
   const auto scene = build_scene(rig_with_room());
   ASSERT_TRUE(scene.has_value());
   EXPECT_EQ(scene->triangles.size(), 12u);
@@ -73,7 +73,7 @@ TEST(SceneBuilder, PutsTheRoomWhereItsFileSays) {
   EXPECT_NEAR((scene->origin_world_m - Vec3(0, 0, 1.5)).norm(), 0, 1e-6);
 }
 
-TEST(SceneBuilder, StandsABoxOnTheMiddleOfItsUndersideAndTurnsIt) {
+TEST(SceneBuilder, PlacesABoxByTheCentreOfItsUndersideAndRotatesIt) {
   Rig rig = rig_with_room();
   rig.scene.objects = {box_object("plinth", {0.4, 0.2, 1}, {1, 0.5, 0.1}, rad_from_deg(90))};
   const auto scene = build_scene(rig);
@@ -97,7 +97,7 @@ TEST(SceneBuilder, ABoxIsClosedAndItsNormalsPointOutwards) {
   EXPECT_NEAR(volume, 24, 1e-5);
 }
 
-TEST(SceneBuilder, ScalesAMeshToItsHeightAndStandsIt) {
+TEST(SceneBuilder, ScalesAMeshToItsHeightAndPlacesIt) {
   Rig rig;
   SceneObject model = box_object("model", Vec3::Zero(), {7, 8, 9}, rad_from_deg(90));
   model.mesh = room();
@@ -139,7 +139,7 @@ TEST(SceneBuilder, FirstMatchingReflectanceRuleWins) {
   EXPECT_EQ(scene->warnings.size(), 1u);
 }
 
-TEST(SceneBuilder, GivesGlossByTheRuleThatGivesTheReflectance) {
+TEST(SceneBuilder, TakesGlossFromTheRuleOfTheReflectance) {
   Rig rig = rig_with_room();
   rig.scene.reflectances = {{"wa?l", Vec3::Constant(0.6), {8, 1}, 0.04, 0.2},
                             {"*l*", Vec3::Constant(0.2), {9, 1}, 0.5, 0.7}};
@@ -163,7 +163,7 @@ TEST(SceneBuilder, GivesGlossByTheRuleThatGivesTheReflectance) {
   EXPECT_EQ(own, 1);
 }
 
-TEST(SceneBuilder, FallsBackToTheDefaultAndClampsWhatNoPaintReaches) {
+TEST(SceneBuilder, FallsBackToTheDefaultAndClampsImpossibleReflectances) {
   Rig rig = rig_with_room();
   rig.scene.default_reflectance_rgb = Vec3::Constant(0.33);
   rig.scene.reflectances = {{"wall", Vec3::Constant(1.0), {8, 1}}};
@@ -174,7 +174,7 @@ TEST(SceneBuilder, FallsBackToTheDefaultAndClampsWhatNoPaintReaches) {
   EXPECT_TRUE(warns_of(*scene, "material 'wall': reflectance above 0.95"));
 }
 
-TEST(SceneBuilder, NamesTheMaterialWhoseColourTheFileStatesTooBrightUnlessTheRigStatesIt) {
+TEST(SceneBuilder, NotesAMaterialColourTooBrightUnlessTheRigStatesIt) {
   std::string name = (std::filesystem::temp_directory_path() / "luxrig-builder-XXXXXX").string();
   const std::filesystem::path folder = mkdtemp(name.data());
   std::ofstream(folder / "p.mtl") << "newmtl snow\nKd 1 1 1\nnewmtl idle\nKd 1 1 1\n";

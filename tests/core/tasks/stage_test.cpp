@@ -17,7 +17,7 @@ bool is_requested(const std::stop_token& token) {
   return requested.get_future().wait_for(std::chrono::minutes(2)) == std::future_status::ready;
 }
 
-TEST(Stage, TellsItsBeginningItsNewsAndItsEnd) {
+TEST(Stage, ReportsItsStartProgressAndEnd) {
   std::vector<Doing> told;
   {
     const Stage stage({{}, {}, [&](const Doing& doing) { told.push_back(doing); }}, "places", "looking");
@@ -37,7 +37,7 @@ TEST(Stage, StopsWhenItsTimeIsUp) {
   EXPECT_TRUE(stage.time_is_up());
 }
 
-TEST(Stage, StopsWhenAskedFromOutsideAndThenItsTimeWasNotUp) {
+TEST(Stage, StopsWhenAskedWithoutItsTimeBeingUp) {
   std::stop_source outside;
   const Stage stage({outside.get_token(), {}}, "transport", "starting", 3600);
   EXPECT_FALSE(stage.stop().stop_requested());
@@ -46,7 +46,7 @@ TEST(Stage, StopsWhenAskedFromOutsideAndThenItsTimeWasNotUp) {
   EXPECT_FALSE(stage.time_is_up());
 }
 
-TEST(Stage, SaysWhetherAStopTakesTheBestItHas) {
+TEST(Stage, StatesWhetherAStopKeepsTheBestSoFar) {
   std::vector<bool> told;
   const Tell tell = [&](const Doing& doing) { told.push_back(doing.can_be_taken); };
   const std::stop_source person;
@@ -55,14 +55,14 @@ TEST(Stage, SaysWhetherAStopTakesTheBestItHas) {
   EXPECT_EQ(told, (std::vector<bool>{true, true, false, false}));
 }
 
-TEST(Stage, BegunAfterTheStopIsStopped) {
+TEST(Stage, StartedAfterTheStopIsStopped) {
   std::stop_source outside;
   outside.request_stop();
   const Stage stage({outside.get_token(), {}}, "transport", "starting");
   EXPECT_TRUE(stage.stop().stop_requested());
 }
 
-TEST(Stage, EndsAtOnceHoweverMuchTimeItHas) {
+TEST(Stage, EndsAtOnceWithAnyTimeLimit) {
   for (const double seconds : {0.0, -1.0, 1e300, std::numeric_limits<double>::infinity()}) {
     const Stage stage({}, "transport", "starting", seconds);
     if (seconds <= 0) {

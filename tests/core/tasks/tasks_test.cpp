@@ -10,20 +10,20 @@ namespace {
 
 using namespace tasks_fixture;
 
-TEST(Session, OfARigWithALampInAPointIsRefused) {
+TEST(Session, IsRefusedForALampAtAPoint) {
   const auto session =
       open_rig(replaced(room_text(), "position_m = [-1.5, 0.0, 2.9]", "position_m = [1.5, -1.0, 0.0]"), room_folder());
   ASSERT_FALSE(session);
   EXPECT_NE(session.error()[0].text().find("\"floor\""), std::string::npos) << session.error()[0].text();
 }
 
-TEST(Session, WithoutItsMeshIsRefused) {
+TEST(Session, IsRefusedWithoutItsMesh) {
   const auto session = open_rig(replaced(room_text(), "file = \"room.obj\"", "file = \"hall.obj\""), room_folder());
   ASSERT_FALSE(session);
   EXPECT_NE(session.error()[0].text().find("hall.obj"), std::string::npos) << session.error()[0].text();
 }
 
-TEST(ComputeTransport, TellsItsStageAndReachesTheErrorWanted) {
+TEST(ComputeTransport, ReportsItsStageAndReachesTheWantedError) {
   const Session session = opened(room_text());
   std::vector<Doing> told;
   ComputeOptions options;
@@ -40,7 +40,7 @@ TEST(ComputeTransport, TellsItsStageAndReachesTheErrorWanted) {
   EXPECT_TRUE(told.back().ended);
 }
 
-TEST(ComputeTransport, EndsWhenItsTimeIsUpAndSaysSo) {
+TEST(ComputeTransport, EndsWhenItsTimeIsUpAndReportsIt) {
   const Session session = opened(room_text());
   ComputeOptions options;
   options.model = Model::gather;
@@ -71,7 +71,7 @@ TEST(ComputeTransport, EndsWhenAskedWhileItRuns) {
   EXPECT_EQ(transport.error().cause, Cause::cancelled);
 }
 
-TEST(SolveTasks, SetsLevelsThatGiveThePointsTheirGoals) {
+TEST(SolveTasks, SetsLevelsThatMeetTheGoals) {
   const Session session = opened(room_text());
   const TransportMatrix transport = transport_of(session, {});
   const auto solved = solve_tasks(session, transport, {});
@@ -87,7 +87,7 @@ TEST(SolveTasks, SetsLevelsThatGiveThePointsTheirGoals) {
   }
 }
 
-TEST(SolveTasks, RefusesWhereLightThatStaysIsAboveALimit) {
+TEST(SolveTasks, RefusesWhenFixedLightExceedsALimit) {
   const Session session = opened(replaced(room_with_places(), "fixtures = \"off\"", "fixtures = \"full\""));
   const auto solved = solve_tasks(session, transport_of(session, {}), {});
   ASSERT_FALSE(solved);
@@ -113,7 +113,7 @@ TEST(SolveTasks, ASearchEndedByAPersonGivesItsBestSoFar) {
   EXPECT_FALSE(solved->plan.tasks[0].lights.empty());
 }
 
-TEST(SolveWhatHangs, LeavesOutPlacesAndLightsWhatHangs) {
+TEST(SolveWhatHangs, SkipsPlacementsAndLightsExistingFixtures) {
   const Session session = opened(room_with_places());
   const auto solved = solve_what_hangs(session, transport_of(session, {}), {});
   ASSERT_TRUE(solved) << solved.error().detail;
@@ -122,7 +122,7 @@ TEST(SolveWhatHangs, LeavesOutPlacesAndLightsWhatHangs) {
   EXPECT_EQ(solved->rig.fixtures.size(), 3);
 }
 
-TEST(LightModel, HasTheTransportOfPointsAndMetersApart) {
+TEST(LightModel, SeparatesTheTransportOfPointsAndMeters) {
   const Session session = opened(room_text());
   const TransportMatrix transport = transport_of(session, {});
   const LightModel model = light_model(session.rig, transport);

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::string_view kKnown[] = {"lumens", "watts", "beam_angle_deg", "field_angle_deg", "name"};
 
-TEST(NearestName, FindsSlipsOfTheFinger) {
+TEST(NearestName, FindsTypingErrors) {
   EXPECT_EQ(nearest_name("lumen", kKnown), "lumens");
   EXPECT_EQ(nearest_name("lumesn", kKnown), "lumens");
   EXPECT_EQ(nearest_name("Watts", kKnown), "watts");
@@ -19,7 +19,7 @@ TEST(NearestName, FindsSlipsOfTheFinger) {
   EXPECT_EQ(nearest_name("nmae", kKnown), "name");
 }
 
-TEST(NearestName, FindsNothingWhenNothingIsNear) {
+TEST(NearestName, FindsNothingWhenNoNameIsNear) {
   EXPECT_EQ(nearest_name("colour", kKnown), "");
   EXPECT_EQ(nearest_name("", kKnown), "");
   EXPECT_EQ(nearest_name("xy", kKnown), "");
@@ -27,12 +27,12 @@ TEST(NearestName, FindsNothingWhenNothingIsNear) {
   EXPECT_EQ(nearest_name("lumens", {}), "");
 }
 
-TEST(NearestName, TakesTheFirstOfTwoEquallyNear) {
+TEST(NearestName, TakesTheFirstOfTwoEquallyNearNames) {
   constexpr std::string_view kPair[] = {"spot-1", "spot-2"};
   EXPECT_EQ(nearest_name("spot-3", kPair), "spot-1");
 }
 
-TEST(MendForUnknown, ListsWhatIsKnownWhenNothingIsNear) {
+TEST(MendForUnknown, ListsKnownNamesWhenNoneIsNear) {
   EXPECT_EQ(mend_for_unknown("lumen", kKnown, "-"), "did you mean \"lumens\"?");
   EXPECT_EQ(mend_for_unknown("colour", kKnown, "-"), "known: lumens, watts, beam_angle_deg, field_angle_deg, name");
   EXPECT_EQ(mend_for_unknown("colour", {}, "add one"), "add one");

@@ -12,7 +12,7 @@ namespace {
 using namespace bsdf_fixture;
 
 // The coat reflects Es, the body reflects ρ of the rest. All light that is not absorbed comes out.
-TEST(Bsdf, ReflectsTheCoatsShareAndTheBodysOfTheRest) {
+TEST(Bsdf, ReflectsTheCoatsShareAndTheBodysShareOfTheRest) {
   for (const double roughness : {0.3, 0.6, 1.0})
     for (const double specular : {0.04, 0.5}) {
       const Bsdf bsdf(glossy(specular, roughness, 0.8));
@@ -24,7 +24,7 @@ TEST(Bsdf, ReflectsTheCoatsShareAndTheBodysOfTheRest) {
     }
 }
 
-TEST(Bsdf, SamplesByTheDensityItStates) {
+TEST(Bsdf, SamplesByItsStatedDensity) {
   std::mt19937_64 random(2);
   std::uniform_real_distribution<double> unit(0, 1);
   for (const double roughness : {0.2, 0.5, 1.0}) {

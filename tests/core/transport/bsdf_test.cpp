@@ -34,7 +34,7 @@ TEST(Bsdf, IsReciprocal) {
 }
 
 // A coat that absorbs nothing reflects everything, however rough: light that bounces between facets is not lost.
-TEST(Bsdf, ACoatThatReflectsAllLosesNothing) {
+TEST(Bsdf, AFullyReflectingCoatLosesNothing) {
   for (const double roughness : {0.3, 0.6, 1.0})
     for (const double cosine : kCosines)
       EXPECT_NEAR(brute_albedo(Bsdf(glossy(1, roughness, 0.5)), direction(cosine, 0.3)), 1, 0.006)
@@ -42,13 +42,13 @@ TEST(Bsdf, ACoatThatReflectsAllLosesNothing) {
 }
 
 // A smooth coat at normal incidence is a mirror of the stated reflectance.
-TEST(Bsdf, ASmoothCoatReflectsItsStatedShareStraightOn) {
+TEST(Bsdf, ASmoothCoatReflectsItsStatedShareAtNormalIncidence) {
   EXPECT_NEAR(Bsdf(glossy(0.04, 0.05, 0.5)).coat_albedo(1), 0.04, 0.0005);
   EXPECT_NEAR(Bsdf(glossy(0.7, 0.05, 0.5)).coat_albedo(1), 0.7, 0.003);
   EXPECT_GT(Bsdf(glossy(0.04, 0.05, 0.5)).coat_albedo(0.05), 0.5) << "Fresnel: nearly all at grazing angles";
 }
 
-TEST(Bsdf, FramesAreOrthonormalWhereverTheNormalPoints) {
+TEST(Bsdf, FramesAreOrthonormalForAnyNormal) {
   for (const Vec3& n : {Vec3(0, 0, 1), Vec3(0, 0, -1), Vec3(1, 0, 0), Vec3(0.6, 0, -0.8), Vec3(1e-9, 0, -1)}) {
     const Frame frame(n.normalized());
     Mat3 columns;

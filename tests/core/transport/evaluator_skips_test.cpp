@@ -9,7 +9,7 @@
 namespace luxrig {
 namespace {
 
-TEST(DirectSkips, LightIsThatOfAShadowRayForEveryPair) {
+TEST(DirectSkips, LightMatchesOneShadowRayPerPair) {
   for (const LitRoom& room : {make_box_room(), make_eight_room_flat(), make_gallery_hall(), make_atrium()}) {
     const RayScene rays(room.scene);
     const auto got = make_direct_evaluator(rays)->evaluate(room.receivers, room.emitters, {});
@@ -38,7 +38,7 @@ TEST(DirectSkips, LightIsThatOfAShadowRayForEveryPair) {
   }
 }
 
-TEST(DirectSkips, WaysProvenClearOrBlockedSampleAsTheyAreProven) {
+TEST(DirectSkips, SamplesAgreeWithProvenClearAndBlockedShafts) {
   for (const LitRoom& room : {make_box_room(), make_eight_room_flat()}) {
     const RayScene rays(room.scene);
     std::vector<Emitter> disks = room.emitters;
@@ -69,7 +69,7 @@ TEST(DirectSkips, WaysProvenClearOrBlockedSampleAsTheyAreProven) {
 }
 
 // Seven lamps beyond a closed wall: their columns are dark, and the first lamp's columns move within their errors.
-TEST(PathSkips, LampsThatMatterToNoReceiverCostFewRaysAndMoveNothingBeyondItsError) {
+TEST(PathSkips, IrrelevantLampsCostFewRaysAndShiftLightOnlyWithinErrors) {
   const LitRoom room = make_box_room();
   Scene scene = room.scene;
   // A closed box with lamps in it, far above the room.

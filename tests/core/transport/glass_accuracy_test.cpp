@@ -68,7 +68,7 @@ class RandomWalk {
   Vec3 lamp_m_;
 };
 
-TEST(Glass, PathsAgreeWithARandomWalkOfIndependentMake) {
+TEST(Glass, PathsAgreeWithAnIndependentRandomWalk) {
   const Vec3 lamp_m(0.4, -0.3, 0.8);
   const std::vector<Receiver> receivers = some_receivers();
   for (const double transmittance : {0.9, 0.35}) {

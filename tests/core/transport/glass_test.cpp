@@ -13,7 +13,7 @@ namespace {
 
 using namespace glass_fixture;
 
-TEST(Glass, ThatTakesNothingChangesNothing) {
+TEST(Glass, OfFullTransmittanceChangesNothing) {
   const Scene bare = make_cube(2 * kHalf_m, 0.5);
   Scene cube = bare;
   cube.panes = pane_at(0.25, 1);
@@ -25,7 +25,7 @@ TEST(Glass, ThatTakesNothingChangesNothing) {
   EXPECT_LT((a->lux_per_level - b->lux_per_level).cwiseAbs().maxCoeff(), 1e-9 * b->lux_per_level.maxCoeff());
 }
 
-TEST(Glass, DimsWhatHasSizeAndWhatStandsInTheOpen) {
+TEST(Glass, DimsLampsWithSizeAndLampsInTheOpen) {
   // Only a pane: no triangle stops a ray, yet the light is dimmed.
   Scene scene;
   scene.panes = pane_at(1, 0.8);

@@ -25,7 +25,7 @@ double error_of(double off) {
   return standard_error_of_mean(values);
 }
 
-TEST(JoinedColumns, StandInTheirPlacesWithTheErrorsOfTheirSum) {
+TEST(JoinedColumns, KeepTheirOrderAndTheErrorOfTheirSum) {
   const TransportMatrix known = column(1), anew = column(2);
   EvaluateOptions options;
   options.levels = {1, 0.5};
@@ -59,7 +59,7 @@ TEST(JoinedColumns, DarkReceiversHaveNoRelativeError) {
   EXPECT_EQ(both.rms_error, 0);
 }
 
-TEST(MeanOf, TwoEstimatesHasTheErrorOfTheirSharesInStep) {
+TEST(MeanOf, TwoEstimatesCombinesTheirErrorsByShare) {
   const TransportMatrix both = mean_of(column(1), 0.25, column(2), {});
   EXPECT_EQ(both.lux_per_level, column(1).lux_per_level);
   EXPECT_NEAR(both.relative_error, error_of(0.25 * 1 + 0.75 * 2) / 10, 1e-12);

@@ -43,7 +43,7 @@ TEST(Sobol, ScrambledFirstPairFillsEveryElementaryInterval) {
         expect_elementary_intervals(m, [&](std::uint32_t i) { return SobolSequence(key).pair(i, set, 0); });
 }
 
-TEST(Sobol, EveryCoordinateIsStratifiedAlone) {
+TEST(Sobol, EveryCoordinateIsStratified) {
   for (std::uint32_t d = 0; d < 4; ++d) {
     std::set<int> cells;
     for (std::uint32_t i = 0; i < 256; ++i) cells.insert(static_cast<int>(SobolSequence(7).set(i, 3)[d] * 256));
@@ -51,7 +51,7 @@ TEST(Sobol, EveryCoordinateIsStratifiedAlone) {
   }
 }
 
-TEST(Sobol, APairIsTheSameWhetherAskedAloneOrInItsSet) {
+TEST(Sobol, APairIsTheSameAloneAndWithinItsSet) {
   const SobolSequence s(5);
   for (std::uint32_t i = 0; i < 100; ++i) {
     const auto all = s.set(i, 2);

@@ -63,8 +63,9 @@ TEST_P(WhiteFurnace, IsAsBrightAsTheSkyAtAnyGlossAndRoughness) {
     }
 }
 
-// Receivers that look down on the plate see the sky in its gloss. Neither random light sampling nor light vertices find it.
-TEST_P(WhiteFurnace, APlateMirrorsTheSkyAsItsModelSays) {
+// Receivers that look down on the plate see the sky in its gloss. Neither random light sampling nor light vertices find
+// it.
+TEST_P(WhiteFurnace, APlateMirrorsTheSkyAsItsModelPredicts) {
   Scene scene = basin(0.95, 0.04, 0.05);
   for (Vec3f& vertex : scene.vertices_m) vertex *= 5;
   scene.triangles.resize(2);

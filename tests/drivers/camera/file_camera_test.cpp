@@ -35,7 +35,7 @@ class InAFolder : public ::testing::Test {
   Rig rig;
 };
 
-TEST_F(InAFolder, TheNewestByNameIsTaken) {
+TEST_F(InAFolder, TakesTheNewestByName) {
   pgm("shot_9.pgm", "\x33\x33");
   pgm("shot_10_12.5ms.pgm", "\x66\xff");
   std::ofstream(folder / "notes.txt") << "no picture";
@@ -53,7 +53,7 @@ TEST_F(InAFolder, TheNewestByNameIsTaken) {
   EXPECT_EQ(next->exposure_s, 0) << "its name does not say";
 }
 
-TEST_F(InAFolder, FaultsAreSaidAndPass) {
+TEST_F(InAFolder, ReportsFaultsAndRecovers) {
   const auto camera = make_camera(rig, 0);
   ASSERT_TRUE(camera->activate(at_ms(0)));
   EXPECT_EQ(camera->health(at_ms(0)).at(0).life, Life::faulted) << "nothing is there yet";
@@ -73,7 +73,7 @@ TEST_F(InAFolder, FaultsAreSaidAndPass) {
   EXPECT_EQ(camera->take(at_ms(5)).error().cause, Cause::inactive);
 }
 
-TEST_F(InAFolder, LightInFilesIsTakenAsItIs) {
+TEST_F(InAFolder, TakesLightInFilesUnchanged) {
   const float light[2] = {123, 4};
   std::ofstream(folder / "a.pfm", std::ios::binary) << "Pf\n2 1\n-1.0\n"
                                                     << std::string(reinterpret_cast<const char*>(light), sizeof light);
@@ -87,7 +87,7 @@ TEST_F(InAFolder, LightInFilesIsTakenAsItIs) {
   EXPECT_EQ(taken->saturated_share, 0);
 }
 
-TEST_F(InAFolder, APatternChooses) {
+TEST_F(InAFolder, APatternSelectsFiles) {
   for (const char* name : {"left_1.pgm", "left_2.pgm", "right_3.pgm"}) pgm(name, "\x33\x33");
   const auto left = picture_files(folder / "left_*.pgm");
   ASSERT_TRUE(left);

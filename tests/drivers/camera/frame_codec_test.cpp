@@ -72,7 +72,7 @@ TEST(FrameCodec, ReadsYuyvByRec709sRed) {
   EXPECT_FLOAT_EQ(white->samples[4], 0);
 }
 
-TEST(FrameCodec, LeavesOutWhatFillsALine) {
+TEST(FrameCodec, SkipsLinePadding) {
   FrameLayout layout = layout_of(PixelFormat::grey8, 2, 2);
   layout.bytes_per_line = 4;
   const auto picture = decode_frame(layout, Bytes{51, 102, 9, 9, 153, 204});
@@ -80,7 +80,7 @@ TEST(FrameCodec, LeavesOutWhatFillsALine) {
   EXPECT_FLOAT_EQ(picture->samples[2], 0.6f);
 }
 
-TEST(FrameCodec, RefusesWhatCannotBe) {
+TEST(FrameCodec, RefusesInvalidFrames) {
   EXPECT_FALSE(decode_frame(layout_of(PixelFormat::grey8, 2, 2), Bytes{1, 2, 3}));
   EXPECT_FALSE(decode_frame(layout_of(PixelFormat::grey10, 1, 1), Bytes{0xFF, 0xFF})) << "16 bits in 10";
   EXPECT_FALSE(decode_frame(layout_of(PixelFormat::yuyv, 1, 1), Bytes{1, 2}));

@@ -41,7 +41,7 @@ class AtAModel : public ::testing::Test {
   double time_ms = 0;
 };
 
-TEST_F(AtAModel, FixesEverythingAutomaticAndExposesAsTold) {
+TEST_F(AtAModel, DisablesAutomaticControlsAndSetsTheExposure) {
   const auto taken = take();
   ASSERT_TRUE(taken) << taken.error().detail;
   EXPECT_EQ(control(VideoControl::exposure_auto), 1);
@@ -56,7 +56,7 @@ TEST_F(AtAModel, FixesEverythingAutomaticAndExposesAsTold) {
   EXPECT_EQ(life(), Life::active);
 }
 
-TEST_F(AtAModel, MakesLightOfSamples) {
+TEST_F(AtAModel, ConvertsSamplesToLight) {
   taking().full_scale_cd_m2 = 1000;
   taking().dark_share = 0.1;
   const auto taken = take();
@@ -70,7 +70,7 @@ TEST_F(AtAModel, MakesLightOfSamples) {
   EXPECT_EQ(full->saturated_share, 1);
 }
 
-TEST_F(AtAModel, ThrowsAwayFramesFromBeforeAChangeOfExposure) {
+TEST_F(AtAModel, DiscardsFramesFromBeforeAChangeOfExposure) {
   ASSERT_TRUE(take());
   for (const bool times : {true, false}) {
     device.has_times = times;
@@ -84,7 +84,7 @@ TEST_F(AtAModel, ThrowsAwayFramesFromBeforeAChangeOfExposure) {
   }
 }
 
-TEST_F(AtAModel, ThrowsAwayFramesFromBeforeTheCall) {
+TEST_F(AtAModel, DiscardsFramesFromBeforeTheCall) {
   device.pipeline = 0;
   for (const bool times : {true, false}) {
     device.has_times = times;
@@ -102,7 +102,7 @@ TEST_F(AtAModel, ThrowsAwayFramesFromBeforeTheCall) {
   }
 }
 
-TEST_F(AtAModel, RefusesAnExposureThatIsNotKept) {
+TEST_F(AtAModel, RefusesAnExposureThatTheCameraDoesNotKeep) {
   device.keeps_exposure = 0.5;
   EXPECT_NE(refusal_of_take().find("exposes for 5 ms where 10 ms were set"), std::string::npos);
   EXPECT_EQ(life(), Life::faulted);
@@ -111,7 +111,7 @@ TEST_F(AtAModel, RefusesAnExposureThatIsNotKept) {
   EXPECT_EQ(life(), Life::active);
 }
 
-TEST_F(AtAModel, RefusesWhatTheCameraCannot) {
+TEST_F(AtAModel, RefusesUnsupportedSettings) {
   taking().exposure_s = 0.9;
   EXPECT_NE(refusal_of_take().find("0.1 to 500 ms"), std::string::npos);
   camera.reset();
@@ -140,13 +140,13 @@ TEST_F(AtAModel, RefusesWhatTheCameraCannot) {
   EXPECT_EQ(unknown->exposure_s, 0) << "not known";
 }
 
-TEST_F(AtAModel, SeesWhenSomethingElseSetsTheCamera) {
+TEST_F(AtAModel, DetectsThatSomethingElseChangedTheCamera) {
   ASSERT_TRUE(take());
   device.resets_itself = true;
   EXPECT_NE(refusal_of_take().find("something else changed"), std::string::npos);
 }
 
-TEST_F(AtAModel, SaysThatItIsUnpluggedAndComesBackByItself) {
+TEST_F(AtAModel, ReportsThatItIsUnpluggedAndRecoversByItself) {
   ASSERT_TRUE(take());
   device.plugged_in = false;
   const auto gone = take();
@@ -161,7 +161,7 @@ TEST_F(AtAModel, SaysThatItIsUnpluggedAndComesBackByItself) {
   EXPECT_EQ(device.opened, 2);
 }
 
-TEST_F(AtAModel, StartsFaultedWithoutACameraAndRetriesNoMoreOftenThanItMay) {
+TEST_F(AtAModel, StartsFaultedWithoutACameraAndLimitsItsRetries) {
   device.plugged_in = false;
   EXPECT_TRUE(source().activate(at_ms(0)).has_value());
   EXPECT_EQ(life(), Life::faulted);
@@ -171,7 +171,7 @@ TEST_F(AtAModel, StartsFaultedWithoutACameraAndRetriesNoMoreOftenThanItMay) {
   EXPECT_TRUE(source().take(at_ms(600)));
 }
 
-TEST_F(AtAModel, SaysThatTheStreamStallsWithinItsBound) {
+TEST_F(AtAModel, ReportsAStalledStreamWithinItsBound) {
   ASSERT_TRUE(take());
   device.stalls = true;
   const Duration before = device.clock;
@@ -183,7 +183,7 @@ TEST_F(AtAModel, SaysThatTheStreamStallsWithinItsBound) {
   EXPECT_TRUE(take());
 }
 
-TEST_F(AtAModel, SkipsDamagedFramesAndRefusesCutOnes) {
+TEST_F(AtAModel, SkipsDamagedFramesAndRefusesTruncatedOnes) {
   ASSERT_TRUE(take());
   device.damaged = 2;
   EXPECT_TRUE(take());
@@ -196,7 +196,7 @@ TEST_F(AtAModel, SkipsDamagedFramesAndRefusesCutOnes) {
   EXPECT_TRUE(take());
 }
 
-TEST_F(AtAModel, GivesTheCameraBackAsItWasFound) {
+TEST_F(AtAModel, RestoresTheCamerasOriginalSettings) {
   device.controls.at(VideoControl::exposure).second = 321;
   const auto found = device.controls;
   ASSERT_TRUE(take());
@@ -212,7 +212,7 @@ TEST_F(AtAModel, GivesTheCameraBackAsItWasFound) {
   for (const auto& [which, value] : found) EXPECT_EQ(control(which), value.second) << name_of(which);
 }
 
-TEST_F(AtAModel, GivesBackWhatItWasAfterPowerCameBack) {
+TEST_F(AtAModel, RestoresTheSettingsFoundAfterAPowerCycle) {
   ASSERT_TRUE(take());
   auto fresh = device.controls;
   fresh.at(VideoControl::exposure_auto).second = 3;
@@ -227,7 +227,7 @@ TEST_F(AtAModel, GivesBackWhatItWasAfterPowerCameBack) {
   EXPECT_EQ(control(VideoControl::gain), 33);
 }
 
-TEST_F(AtAModel, RefusesExposuresThatAreNone) {
+TEST_F(AtAModel, RefusesInvalidExposures) {
   for (const double bad : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()})
     EXPECT_EQ(source().set_exposure(bad).error().cause, Cause::invalid);
   const auto taken = take();
@@ -235,12 +235,12 @@ TEST_F(AtAModel, RefusesExposuresThatAreNone) {
   EXPECT_DOUBLE_EQ(taken->exposure_s, 0.010);
 }
 
-TEST_F(AtAModel, SaysThatItIsInUse) {
+TEST_F(AtAModel, ReportsThatItIsInUse) {
   device.in_use = true;
   EXPECT_NE(refusal_of_take().find("in use"), std::string::npos);
 }
 
-TEST_F(AtAModel, HasTheLifeOfADriver) {
+TEST_F(AtAModel, FollowsTheDriverLifecycle) {
   CameraSource& camera_of = source();
   EXPECT_TRUE(camera_of.activate(at_ms(1)).has_value()) << "twice";
   EXPECT_EQ(camera_of.picture_taker(), &camera_of);

@@ -24,7 +24,7 @@ std::string only_problem(const Rig& rig) {
   return problems.empty() ? "" : problems[0].text();
 }
 
-TEST(CanopenOptions, AreGoodAsTheyStand) {
+TEST(CanopenOptions, AreValidByDefault) {
   EXPECT_TRUE(check_canopen(rig_with_axes(), 0).empty());
   EXPECT_TRUE(check_canopen(rig_with_axes({{"home", std::string("when needed")},
                                            {"on_stop", std::string("release")},
@@ -33,7 +33,7 @@ TEST(CanopenOptions, AreGoodAsTheyStand) {
                   .empty());
 }
 
-TEST(CanopenOptions, SayWhatIsWrongAndWhatWouldMendIt) {
+TEST(CanopenOptions, ReportErrorsWithARemedy) {
   EXPECT_EQ(only_problem(rig_with_axes({{"home", std::string("sometimes")}})),
             "a/rig.toml:8:5: home = \"sometimes\" is none of its values: use one of \"at start\", \"when needed\", "
             "\"never\"");
@@ -59,7 +59,7 @@ TEST(CanopenOptions, SayWhatIsWrongAndWhatWouldMendIt) {
 }
 
 /// On most build machines, as here, the kernel has no CAN; elsewhere the interface is missing.
-TEST(CanSocket, SaysWhyItCannotBeOpened) {
+TEST(CanSocket, ReportsWhyItCannotBeOpened) {
   auto channel = can::make_can_socket({"nocan9", {0x705}});
   const auto opened = channel->open();
   ASSERT_FALSE(opened);
@@ -75,7 +75,7 @@ TEST(CanSocket, SaysWhyItCannotBeOpened) {
   EXPECT_FALSE(channel->receive());
 }
 
-TEST(CanopenDriver, WithoutAnInterfaceItIsFaultedAndKeepsTrying) {
+TEST(CanopenDriver, IsFaultedWithoutAnInterfaceAndKeepsTrying) {
   const Rig rig = rig_with_axes();
   const auto driver = make_canopen(rig, 0, std::nullopt);
   EXPECT_TRUE(driver->activate(at_ms(0)));

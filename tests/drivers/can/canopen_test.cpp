@@ -83,7 +83,7 @@ TEST(BusState, FollowsTheControllersErrorFrames) {
   EXPECT_EQ(state.overruns(), 1u);
 }
 
-TEST(Nmt, CommandsAndHeartbeatsAreTheStandards) {
+TEST(Nmt, CommandsAndHeartbeatsFollowTheStandard) {
   using namespace canopen;
   EXPECT_EQ(text_of(nmt_frame(NmtCommand::start, 5)), "000#0105");
   EXPECT_EQ(text_of(nmt_frame(NmtCommand::pre_operational, 127)), "000#807F");
@@ -98,7 +98,7 @@ TEST(Nmt, CommandsAndHeartbeatsAreTheStandards) {
   EXPECT_FALSE(decode_heartbeat(can::data_frame(0x705, {})));
 }
 
-TEST(Nmt, AHeartbeatIsMissedAfterItsTimeout) {
+TEST(Nmt, AHeartbeatCountsAsMissedAfterItsTimeout) {
   canopen::HeartbeatConsumer consumer(std::chrono::milliseconds(300));
   EXPECT_FALSE(consumer.state(at_ms(0)));
   consumer.heard(at_ms(0), canopen::NmtState::operational);
@@ -126,7 +126,7 @@ std::string text_of(const canopen::SdoRequest& request) {
   return text;
 }
 
-TEST(PdoSetup, IsInTheOnlyOrderThatNodesTake) {
+TEST(PdoSetup, FollowsTheOrderThatNodesRequire) {
   const auto writes =
       canopen::pdo_setup(canopen::PdoDirection::to_node, 1, 5, 1, {{{0x6040, 0}, 16}, {{0x607A, 0}, 32}});
   std::vector<std::string> texts;

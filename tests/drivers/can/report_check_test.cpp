@@ -46,7 +46,7 @@ struct Drive {
   }
 };
 
-TEST(ReportCheck, ANewStateOrModeIsBelievedTheSecondTime) {
+TEST(ReportCheck, ANewStateOrModeIsAcceptedTheSecondTime) {
   Drive drive;
   EXPECT_FALSE(drive.says(kDisabledWord, 0));
   EXPECT_TRUE(drive.says(kDisabledWord, 0));
@@ -58,7 +58,7 @@ TEST(ReportCheck, ANewStateOrModeIsBelievedTheSecondTime) {
   EXPECT_FALSE(drive.check.doubted());
 }
 
-TEST(ReportCheck, AMoveAtFullSpeedAndAccelerationIsBelievedHoweverItArrives) {
+TEST(ReportCheck, AMoveAtFullSpeedIsAcceptedHoweverReportsArrive) {
   // A trapezoid over 180 000 counts from 0: 0.5 s of ramps.
   const auto at = [](double s) {
     if (s < 0.5) return 45000 * s * s;
@@ -77,7 +77,7 @@ TEST(ReportCheck, AMoveAtFullSpeedAndAccelerationIsBelievedHoweverItArrives) {
   }
 }
 
-TEST(ReportCheck, AStandingAxisCannotBeFarAwayAtOnce) {
+TEST(ReportCheck, AStandingAxisCannotJumpFarAway) {
   Drive drive;
   drive.stands(1000);
   EXPECT_TRUE(drive.says(kEnabledWord, 1200)) << "0.4 degrees";
@@ -90,7 +90,7 @@ TEST(ReportCheck, AStandingAxisCannotBeFarAwayAtOnce) {
   EXPECT_EQ(drive.check.why(), "its position went from 1200 to 2147483647 counts at once");
 }
 
-TEST(ReportCheck, ContradictionsFarApartAreLetPass) {
+TEST(ReportCheck, ContradictionsFarApartAreTolerated) {
   Drive drive;
   drive.stands(0);
   for (int i = 0; i < 20; ++i) {
@@ -100,7 +100,7 @@ TEST(ReportCheck, ContradictionsFarApartAreLetPass) {
   }
 }
 
-TEST(ReportCheck, WrongLengthsAndWordsOfNoStateAreDoubted) {
+TEST(ReportCheck, WrongLengthsAndUndefinedStatusWordsAreDoubted) {
   Drive drive;
   drive.stands(0);
   const std::array<std::uint8_t, 8> bytes{0x37, 0x02};
@@ -117,7 +117,7 @@ TEST(ReportCheck, WrongLengthsAndWordsOfNoStateAreDoubted) {
   EXPECT_EQ(third.check.why(), "its state or mode is another with every word");
 }
 
-TEST(ReportCheck, ADoubtEndsWhereTheAxisCanBe) {
+TEST(ReportCheck, ADoubtEndsAtAPlausiblePosition) {
   const auto doubted_at = [](std::int32_t speed) {
     Drive drive;
     drive.stands(0);
@@ -143,7 +143,7 @@ TEST(ReportCheck, ADoubtEndsWhereTheAxisCanBe) {
   }
 }
 
-TEST(ReportCheck, WhileTheCountIsBeingSetAnyPositionFollows) {
+TEST(ReportCheck, AnyPositionIsAcceptedWhileTheCountIsBeingSet) {
   Drive drive;
   drive.stands(0);
   for (const std::int32_t position : {50000, -50000, 0, 1000000})

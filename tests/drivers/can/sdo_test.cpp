@@ -11,7 +11,7 @@ namespace {
 std::vector<std::uint8_t> of(const SdoBytes& bytes) { return {bytes.begin(), bytes.end()}; }
 
 /// Requests and answers as other decoders read them.
-TEST(SdoCodec, WritesAndReadsAsCiA301HasThem) {
+TEST(SdoCodec, FollowsCiA301) {
   EXPECT_EQ(of(encode_download({0x6040, 0}, std::vector<std::uint8_t>{7, 0})), from_hex("2B40600007000000"));
   EXPECT_EQ(of(encode_download({0x607A, 0}, std::vector<std::uint8_t>{0x10, 0x27, 0, 0})),
             from_hex("237A600010270000"));
@@ -23,7 +23,7 @@ TEST(SdoCodec, WritesAndReadsAsCiA301HasThem) {
   EXPECT_EQ(of(encode_abort({0x1008, 0}, kAbortTimeout)), from_hex("8008100000000405"));
 }
 
-TEST(SdoCodec, UnderstandsEveryAnswer) {
+TEST(SdoCodec, DecodesEveryAnswer) {
   SdoAnswer answer = decode_sdo_answer(from_hex("6040600000000000"));
   EXPECT_EQ(answer.kind, SdoAnswerKind::downloaded);
   EXPECT_EQ(answer.object, (ObjectAddress{0x6040, 0}));
@@ -74,7 +74,7 @@ std::string sent_by(SdoClient& client, Time now) {
   return text;
 }
 
-TEST(SdoClient, WritesOnceAnswered) {
+TEST(SdoClient, CompletesAWriteOnItsOwnAnswer) {
   SdoClient client(5);
   client.start({{0x6040, 0}, {7, 0}});
   EXPECT_EQ(sent_by(client, at_ms(0)), "2B40600007000000");
@@ -91,7 +91,7 @@ TEST(SdoClient, WritesOnceAnswered) {
   EXPECT_EQ(sent_by(client, at_ms(5000)), "");
 }
 
-TEST(SdoClient, RepeatsTwiceThenGivesUpAndSaysSo) {
+TEST(SdoClient, RepeatsTwiceThenGivesUpWithAReport) {
   SdoClient client(5);
   client.start({{0x1000, 0}, {}});
   EXPECT_EQ(sent_by(client, at_ms(0)), "4000100000000000");
@@ -120,7 +120,7 @@ TEST(SdoClient, ReadsInSegments) {
   EXPECT_EQ(std::string((*result)->begin(), (*result)->end()), "ABCDEFGHI");
 }
 
-TEST(SdoClient, BeginsAnewWhenASegmentIsLost) {
+TEST(SdoClient, RestartsWhenASegmentIsLost) {
   SdoClient client(5);
   client.start({{0x1008, 0}, {}});
   (void)sent_by(client, at_ms(0));
@@ -131,7 +131,7 @@ TEST(SdoClient, BeginsAnewWhenASegmentIsLost) {
   EXPECT_EQ(sent_by(client, at_ms(601)), "6000000000000000");
 }
 
-TEST(SdoClient, EndsATransferWhoseToggleBitIsWrongOrThatNeverEnds) {
+TEST(SdoClient, AbortsATransferWithAWrongToggleBitOrWithoutEnd) {
   SdoClient wrong(5);
   wrong.start({{0x1008, 0}, {}});
   (void)sent_by(wrong, at_ms(0));

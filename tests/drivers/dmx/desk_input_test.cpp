@@ -60,13 +60,13 @@ std::vector<std::uint8_t> slots_with(std::vector<std::pair<int, int>> values) {
   return slots;
 }
 
-TEST(DeskInput, IsNoneUnlessAsked) {
+TEST(DeskInput, IsAbsentUnlessConfigured) {
   InputBench bench("sacn", {});
   EXPECT_EQ(bench.input, nullptr);
   EXPECT_TRUE(bench.net->joined.empty());
 }
 
-TEST(DeskInput, SaysWhatADeskWantsOfEachFixtureOverSacn) {
+TEST(DeskInput, ReadsADesksCommandsPerFixtureOverSacn) {
   InputBench bench("sacn", {{"input", std::string("takeover")}, {"input_offset", std::int64_t{100}}});
   ASSERT_NE(bench.input, nullptr);
   const auto parts = bench.input->parts();
@@ -95,7 +95,7 @@ TEST(DeskInput, SaysWhatADeskWantsOfEachFixtureOverSacn) {
   EXPECT_EQ(bench.net->joined, (std::set<std::uint32_t>{sacn::multicast_group(101), sacn::multicast_group(102)}));
 }
 
-TEST(DeskInput, LeavesOutAFixtureWhoseSlotsAreNotSent) {
+TEST(DeskInput, OmitsAFixtureWhoseSlotsAreNotSent) {
   InputBench bench("sacn", {{"input", std::string("merge")}});
   for (int i = 0; i <= 80; ++i) {
     bench.sacn(1, {1, 2, 3, 4}, static_cast<std::uint8_t>(i));  // the spot is slot 5
@@ -106,7 +106,7 @@ TEST(DeskInput, LeavesOutAFixtureWhoseSlotsAreNotSent) {
   EXPECT_TRUE(frames[0].commands.empty());
 }
 
-TEST(DeskInput, ReadsBackWhatTheSamePatchWouldSend) {
+TEST(DeskInput, RoundTripsThePatchsOwnOutput) {
   Rig rig = rig_with(bus_of("sacn"));
   add_dmx(rig, "spot", 1, 5);
   add_head(rig, "head", 1, 10);
@@ -128,7 +128,7 @@ TEST(DeskInput, ReadsBackWhatTheSamePatchWouldSend) {
   }
 }
 
-TEST(DeskInput, ReadsBackThreeBytesAndPartsOfAChannelsValues) {
+TEST(DeskInput, RoundTripsThreeBytesAndPartialRanges) {
   Rig rig = rig_with(bus_of("sacn"));
   add_dmx(rig, "cells", 1, 500);
   const DmxTravel middle{0.25, 0.75}, falling{1, 0};
@@ -155,7 +155,7 @@ TEST(DeskInput, ReadsBackThreeBytesAndPartsOfAChannelsValues) {
   EXPECT_TRUE(bay.decode(0, bay.universes()[0].slots, all).empty());
 }
 
-TEST(DeskInput, ReadsBackADimmerThatBeginsAboveDarkAndAShutterThatShutsAtLevel0) {
+TEST(DeskInput, RoundTripsADimmerAboveDarkAndAShutterClosedAtLevel0) {
   Rig rig = rig_with(bus_of("sacn"));
   add_dmx(rig, "lamp", 1, 500);
   const double open = 40 / 255.0, shut = 15 / 255.0;
@@ -175,7 +175,7 @@ TEST(DeskInput, ReadsBackADimmerThatBeginsAboveDarkAndAShutterThatShutsAtLevel0)
   }
 }
 
-TEST(DeskInput, FallsSilentUniverseByUniverseWithThreeGoodbyes) {
+TEST(DeskInput, FallsSilentPerUniverseWithThreeGoodbyes) {
   InputBench bench("sacn", {{"input", std::string("standby")}});
   bench.input->set_silent(at_ms(0), 0, true);
   EXPECT_TRUE(bench.net->sent.empty());  // nothing was sent, so there is nothing to end
@@ -195,7 +195,7 @@ TEST(DeskInput, FallsSilentUniverseByUniverseWithThreeGoodbyes) {
   EXPECT_FALSE(sacn::decode(bench.net->sent[3].bytes)->terminated);
 }
 
-TEST(DeskInput, StandsByOnlyForSourcesThatReceiversWouldRatherObey) {
+TEST(DeskInput, StandsByOnlyForSourcesThatOutrankIt) {
   InputBench bench("sacn", {{"input", std::string("standby")}, {"priority", std::int64_t{150}}});
   for (int i = 0; i <= 80; ++i) {
     bench.sacn(1, slots_with({{5, 255}}), static_cast<std::uint8_t>(i));  // priority 120
@@ -232,7 +232,7 @@ TEST(DeskInput, IsFoundByAnArtnetDeskAndFollowsIt) {
   EXPECT_EQ(bench.driver->health(at_ms(2023)).size(), 1u);
 }
 
-TEST(DeskInput, LeavesNodesNoLookToMergeWhenItFallsSilentOverArtnet) {
+TEST(DeskInput, LeavesNodesNothingToMergeWhenItFallsSilent) {
   InputBench bench("artnet", {{"input", std::string("standby")}});
   artnet::PollReply node;
   node.short_name = "node";
@@ -249,7 +249,7 @@ TEST(DeskInput, LeavesNodesNoLookToMergeWhenItFallsSilentOverArtnet) {
   EXPECT_EQ(address->bind_index, 3);
 }
 
-TEST(DeskInput, RefusesWhatCannotBeHeard) {
+TEST(DeskInput, RefusesInvalidInputOptions) {
   const auto problem = [](Options options) {
     Rig rig = rig_with(bus_of("sacn", std::move(options)));
     add_dmx(rig, "spot", 1, 5);

@@ -33,7 +33,7 @@ TEST(DmxPatch, EncodesThePublishedAimVectors) {
   EXPECT_EQ(tilt(0), 0x8000u);
 }
 
-TEST(DmxPatch, Gives16BitAnglesBackWithinHalfAStep) {
+TEST(DmxPatch, RoundTrips16BitAnglesWithinHalfAStep) {
   std::mt19937 random(11);
   std::uniform_real_distribution<double> angle(-270, 270);
   for (int i = 0; i < 2000; ++i) {
@@ -43,7 +43,7 @@ TEST(DmxPatch, Gives16BitAnglesBackWithinHalfAStep) {
   }
 }
 
-TEST(DmxPatch, PutsBothBytesOfEachValueAndTheConstantsIntoTheFixturesSlots) {
+TEST(DmxPatch, WritesBothBytesOfEachValueAndTheConstants) {
   Rig rig = rig_with(bus_of("sacn"));
   add_head(rig, "head", 3, 10);
   DmxPatchbay bay(rig, 0);
@@ -62,7 +62,7 @@ TEST(DmxPatch, PutsBothBytesOfEachValueAndTheConstantsIntoTheFixturesSlots) {
   }
 }
 
-TEST(DmxPatch, UsesTheWholeByteWhereThereIsNoFineSlot) {
+TEST(DmxPatch, UsesTheFullByteWithoutAFineSlot) {
   Rig rig = rig_with(bus_of("sacn"));
   Fixture& head = add_dmx(rig, "head", 1, 1, {{SlotUse::pan}, {SlotUse::tilt}, {SlotUse::dimmer}});
   head.moves = true;
@@ -77,7 +77,7 @@ TEST(DmxPatch, UsesTheWholeByteWhereThereIsNoFineSlot) {
   EXPECT_EQ(slots[2], 255);
 }
 
-TEST(DmxPatch, StartsDarkWithHeadsWhereTheRigFileAimsThem) {
+TEST(DmxPatch, StartsDarkWithHeadsAimedAsTheRigFileStates) {
   Rig rig = rig_with(bus_of("sacn"));
   add_head(rig, "head", 1, 1).joints = {rad_from_deg(90), 0};
   const DmxPatchbay bay(rig, 0);
@@ -88,7 +88,7 @@ TEST(DmxPatch, StartsDarkWithHeadsWhereTheRigFileAimsThem) {
   EXPECT_EQ(slots[6], 255);
 }
 
-TEST(DmxPatch, AnAimGoesOutOnlyWithTheNextLevels) {
+TEST(DmxPatch, SendsAnAimOnlyWithTheNextLevels) {
   Rig rig = rig_with(bus_of("sacn"));
   add_head(rig, "head", 1, 1);
   DmxPatchbay bay(rig, 0);
@@ -150,7 +150,7 @@ Fixture& add_zooming_head(Rig& rig, bool inverted) {
   return head;
 }
 
-TEST(DmxPatch, ZoomsLinearlyInTheBeamAngleEitherWayRound) {
+TEST(DmxPatch, ZoomsLinearlyInBeamAngleInEitherDirection) {
   for (const bool inverted : {false, true}) {
     Rig rig = rig_with(bus_of("sacn"));
     add_zooming_head(rig, inverted);

@@ -89,7 +89,7 @@ void watch(unsigned seed, const Hear& look_after_frame) {
   EXPECT_GT(newest, kFrames - 30);
 }
 
-TEST(ReceiverFaults, SacnShowsOnlyFramesThatWereSentInTheirOrderAndLosesTheDeskInTime) {
+TEST(ReceiverFaults, SacnShowsOnlySentFramesInOrderAndLosesTheDeskInTime) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     FaultyNetwork network(seed, bytes_of({{0, 22}, {38, 44}, {115, 125}}));
     sacn::ReceiverSettings settings;
@@ -115,7 +115,7 @@ TEST(ReceiverFaults, SacnShowsOnlyFramesThatWereSentInTheirOrderAndLosesTheDeskI
   }
 }
 
-TEST(ReceiverFaults, ArtnetShowsOnlyFramesThatWereSentInTheirOrderAndLosesTheDeskInTime) {
+TEST(ReceiverFaults, ArtnetShowsOnlySentFramesInOrderAndLosesTheDeskInTime) {
   const SocketAddress desk{0x0A000001, artnet::kPort};
   for (unsigned seed = 1; seed <= 20; ++seed) {
     // Not the operation code, bytes 8 and 9: another one, such as ArtSync, would be a valid packet.
@@ -140,7 +140,7 @@ TEST(ReceiverFaults, ArtnetShowsOnlyFramesThatWereSentInTheirOrderAndLosesTheDes
   }
 }
 
-TEST(ReceiverFaults, TwoSacnDesksMergedShowTheBrighterOfFramesThatWereSent) {
+TEST(ReceiverFaults, TwoMergedSacnDesksShowTheBrighterOfSentFrames) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     const std::vector<std::size_t> fixed = bytes_of({{0, 22}, {38, 44}, {115, 125}});
     FaultyNetwork networks[] = {{seed, fixed}, {seed + 1000, fixed}};

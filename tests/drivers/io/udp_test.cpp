@@ -42,7 +42,7 @@ bool readable(int fd) {
   return ::poll(&wait, 1, 1000) == 1;
 }
 
-TEST(Udp, DeliversADatagramAndReceivesTheAnswer) {
+TEST(Udp, DeliversADatagramAndReceivesItsAnswer) {
   const Receiver receiver;
   const auto channel = make_udp({});
   ASSERT_TRUE(channel->open());
@@ -61,7 +61,7 @@ TEST(Udp, DeliversADatagramAndReceivesTheAnswer) {
   EXPECT_EQ(answer->bytes, (std::vector<std::uint8_t>{'o', 'k'}));
 }
 
-TEST(Udp, TellsOfAClosedPortAndStillSendsToOneThatHasReopened) {
+TEST(Udp, ReportsAClosedPortAndStillSendsToAReopenedOne) {
   SocketAddress address;
   {
     const Receiver receiver;
@@ -81,7 +81,7 @@ TEST(Udp, TellsOfAClosedPortAndStillSendsToOneThatHasReopened) {
   EXPECT_FALSE(channel->take_error());
 }
 
-TEST(Udp, OpensAndClosesAsOftenAsWanted) {
+TEST(Udp, OpensAndClosesRepeatedly) {
   const auto channel = make_udp({});
   EXPECT_FALSE(channel->is_open());
   for (int i = 0; i < 3; ++i) {
@@ -93,7 +93,7 @@ TEST(Udp, OpensAndClosesAsOftenAsWanted) {
   }
 }
 
-TEST(Udp, NamesAnInterfaceThatDoesNotExist) {
+TEST(Udp, NamesAMissingInterface) {
   UdpSettings settings;
   settings.multicast_interface = "no-such-0";
   const auto channel = make_udp(settings);
@@ -103,7 +103,7 @@ TEST(Udp, NamesAnInterfaceThatDoesNotExist) {
   EXPECT_FALSE(channel->is_open());
 }
 
-TEST(Udp, ReadsAddressesWrittenAsNumbersOnly) {
+TEST(Udp, ReadsOnlyNumericAddresses) {
   EXPECT_EQ(parse_ipv4("10.0.0.7"), 0x0A000007u);
   EXPECT_EQ(text_of(SocketAddress{0x0A000007, 80}), "10.0.0.7:80");
   for (const char* bad : {"", "localhost", "10.0.0", "10.0.0.256", "10.0.0.7 ", "::1"}) EXPECT_FALSE(parse_ipv4(bad));

@@ -21,7 +21,7 @@ TEST(ModbusCodec, WritesEachRequestAsTheStandardPrintsIt) {
 }
 
 // Vectors: Modbus Application Protocol 1.1b3, the examples of 6.1, 6.2, 6.5 and 6.11.
-TEST(ModbusCodec, HasCoilsAndDiscreteInputsAsTheStandardPrintsThem) {
+TEST(ModbusCodec, EncodesCoilsAndDiscreteInputsAsTheStandardPrintsThem) {
   const Request coils{1, Function::read_coils, 0x13, 0x13, {}};
   EXPECT_EQ(encode_pdu(coils), from_hex("01 0013 0013"));
   const Answer read = decode_pdu(coils, from_hex("01 03 cd 6b 05"));
@@ -45,7 +45,7 @@ TEST(ModbusCodec, HasCoilsAndDiscreteInputsAsTheStandardPrintsThem) {
   EXPECT_EQ(decode_pdu(ten, from_hex("0f 0013 0009")).verdict, Verdict::garbled);
 }
 
-TEST(ModbusCodec, RefusesSpoiledBitsAndDoesNotMindPadding) {
+TEST(ModbusCodec, RefusesCorruptBitsAndIgnoresPadding) {
   const Request inputs{1, Function::read_discrete, 0, 3, {}};
   EXPECT_EQ(decode_pdu(inputs, from_hex("02 01 fd")).values, (std::vector<std::uint16_t>{1, 0, 1}))
       << "padding is ones";
@@ -75,13 +75,13 @@ TEST(ModbusCodec, NamesExceptions) {
   EXPECT_EQ(exception_name(77), "unknown exception (77)");
 }
 
-TEST(ModbusCodec, TellsAnotherTransactionFromGarbage) {
+TEST(ModbusCodec, DistinguishesAnotherTransactionFromGarbage) {
   const Answer answer = decode(read_request(), 6, from_hex("0005 0000 0009 11 03 06 0001 0002 0003"));
   EXPECT_EQ(answer.verdict, Verdict::foreign);
   EXPECT_EQ(answer.transaction, 5);
 }
 
-TEST(ModbusCodec, AcceptsNoTruncationNoExtensionAndNoChangedFieldAsTheGoodAnswer) {
+TEST(ModbusCodec, RefusesTruncationsExtensionsAndChangedFields) {
   const auto good = from_hex("0005 0000 0009 11 03 06 0001 0002 0003");
   ASSERT_EQ(decode(read_request(), 5, good).verdict, Verdict::good);
   for (std::size_t size = 0; size < good.size(); ++size) {

@@ -8,7 +8,7 @@ namespace {
 using namespace std::chrono_literals;
 constexpr Time kStart = Time{} + std::chrono::hours(1);
 
-TEST(ModbusContact, IsUnknownUntilItAnswersAndWhenItHasNotForASecond) {
+TEST(ModbusContact, IsUnknownBeforeItsFirstAnswerAndAfterASecondOfSilence) {
   ContactWatch contact({9, 4, true});
   EXPECT_EQ(contact.contact(kStart), Contact::unknown);
   const auto request = contact.due(kStart);
@@ -25,7 +25,7 @@ TEST(ModbusContact, IsUnknownUntilItAnswersAndWhenItHasNotForASecond) {
   EXPECT_EQ(contact.contact(kStart + 1100ms), Contact::unknown);
 }
 
-TEST(ModbusContact, AsksForBlackoutInTheStateThatTheRigFileSays) {
+TEST(ModbusContact, RequestsABlackoutInTheConfiguredState) {
   for (const bool when_open : {true, false}) {
     ContactWatch contact({1, 0, when_open});
     contact.answered(kStart, false);

@@ -67,7 +67,7 @@ struct SteppedBus {
   }
 };
 
-TEST(ModbusLateness, AThreadThatIsPutOffRaisesNoFaultWhileTheFarEndAnswers) {
+TEST(ModbusLateness, ADelayedThreadRaisesNoFaultWhileTheFarEndAnswers) {
   SteppedBus bus;
   for (int i = 0; i < 200; ++i) {
     bus.write(i % 20 == 19 ? 5000 : 100, 0.002 * i);
@@ -75,7 +75,7 @@ TEST(ModbusLateness, AThreadThatIsPutOffRaisesNoFaultWhileTheFarEndAnswers) {
   }
 }
 
-TEST(ModbusLateness, OneAnswerMissedAfterAStallOfOursIsNoFaultOfTheUnitNorOfTheBus) {
+TEST(ModbusLateness, OneAnswerMissedAfterAnOwnStallIsNoFault) {
   SteppedBus bus;
   for (int i = 0; i < 20; ++i) bus.write(100, 0.01 * i);
   int missed = 0;
@@ -93,7 +93,7 @@ TEST(ModbusLateness, OneAnswerMissedAfterAStallOfOursIsNoFaultOfTheUnitNorOfTheB
   EXPECT_EQ(health.at(1).errors, 0u);
 }
 
-TEST(ModbusLateness, AUnitThatIsSilentIsFaultedInBoundedTimeAndAlone) {
+TEST(ModbusLateness, ASilentUnitAloneIsFaultedInBoundedTime) {
   SteppedBus bus;
   for (int i = 0; i < 20; ++i) bus.write(100, 0.01 * i);
   bus.answers = [](int unit) { return unit != 2; };
@@ -103,7 +103,7 @@ TEST(ModbusLateness, AUnitThatIsSilentIsFaultedInBoundedTimeAndAlone) {
   EXPECT_LE(milliseconds(static_cast<int>(bus.now_ms - gone_ms)), bus.driver->bounds().fault_after);
 }
 
-TEST(ModbusLateness, ABusThatIsSilentIsFaultedInBoundedTime) {
+TEST(ModbusLateness, ASilentBusIsFaultedInBoundedTime) {
   SteppedBus bus;
   for (int i = 0; i < 20; ++i) bus.write(100, 0.01 * i);
   bus.answers = [](int) { return false; };

@@ -24,7 +24,7 @@ TEST(ModbusRegisters, RoundsADriveToTheNearestCount) {
   EXPECT_EQ(raw_of(1, 1), 1);
 }
 
-TEST(ModbusRegisters, ReadsTheLuxmetersOfTheirManuals) {
+TEST(ModbusRegisters, ReadsLuxmetersAsTheirManualsState) {
   EXPECT_DOUBLE_EQ(lux({}, {0x0007, 0xA120}), 500.0);  // milli-lux, high word first
   ModbusMeterPatch swapped;
   swapped.low_word_first = true;
@@ -35,7 +35,7 @@ TEST(ModbusRegisters, ReadsTheLuxmetersOfTheirManuals) {
   EXPECT_DOUBLE_EQ(lux(narrow, {65535}), 65535.0);
 }
 
-TEST(ModbusRegisters, LosesNoCountOfThirtyTwoBits) {
+TEST(ModbusRegisters, KeepsEveryCountOfThirtyTwoBits) {
   ModbusMeterPatch patch;
   patch.lux_per_count = 1;
   EXPECT_EQ(lux(patch, {0xFFFF, 0xFFFF}), 4294967295.0);
@@ -43,7 +43,7 @@ TEST(ModbusRegisters, LosesNoCountOfThirtyTwoBits) {
   EXPECT_EQ(lux(patch, {0x8000, 0x0001}), 2147483649.0);
 }
 
-TEST(ModbusRegisters, ClipsAtFullScaleAndBelievesNothingFarBeyondIt) {
+TEST(ModbusRegisters, ClipsAtFullScaleAndRejectsReadingsFarBeyondIt) {
   EXPECT_EQ(plausible_lux(0, 1000), 0);
   EXPECT_EQ(plausible_lux(999, 1000), 999);
   EXPECT_EQ(plausible_lux(1040, 1000), 1000);

@@ -47,7 +47,7 @@ TEST(ModbusRtuFrame, FindsThePublishedAnswers) {
   EXPECT_EQ(find_rtu_answer(kDim, from_hex("01 06 0000 00ff c98a")).answer->verdict, Verdict::good);
 }
 
-TEST(ModbusRtuFrame, FindsAnAnswerBehindNoiseStaleHalvesAndOtherUnits) {
+TEST(ModbusRtuFrame, FindsAnAnswerAfterNoiseFragmentsAndOtherUnits) {
   const RtuBytes answer = from_hex("01 03 04 0007a120 33ba");
   for (const RtuBytes& before : {from_hex("ff"), from_hex("01"), from_hex("0103"), from_hex("010304"),
                                  from_hex("a12033ba"), from_hex("02 03 04 0000 0000 c933"), from_hex("00ff00ff00ff")}) {
@@ -58,7 +58,7 @@ TEST(ModbusRtuFrame, FindsAnAnswerBehindNoiseStaleHalvesAndOtherUnits) {
   }
 }
 
-TEST(ModbusRtuFrame, TakesNoPrefixOfAnAnswerForOne) {
+TEST(ModbusRtuFrame, AcceptsNoPrefixOfAnAnswer) {
   const RtuBytes answer = from_hex("01 03 04 0007a120 33ba");
   for (std::size_t size = 0; size < answer.size(); ++size) {
     const RtuSearch found = find_rtu_answer(kReadLux, std::span(answer).first(size));
@@ -67,7 +67,7 @@ TEST(ModbusRtuFrame, TakesNoPrefixOfAnAnswerForOne) {
   }
 }
 
-TEST(ModbusRtuFrame, NoticesEverySpoiledBit) {
+TEST(ModbusRtuFrame, DetectsEveryFlippedBit) {
   const RtuBytes answer = from_hex("01 03 04 0007a120 33ba");
   for (std::size_t bit = 0; bit < 8 * answer.size(); ++bit) {
     RtuBytes spoiled = answer;
@@ -76,7 +76,7 @@ TEST(ModbusRtuFrame, NoticesEverySpoiledBit) {
   }
 }
 
-TEST(ModbusRtuFrame, SaysWhatTheBytesLookLike) {
+TEST(ModbusRtuFrame, DescribesUnusableBytes) {
   EXPECT_EQ(find_rtu_answer(kReadLux, {}).what, "nothing");
   EXPECT_EQ(find_rtu_answer(kReadLux, from_hex("01 03 04 0007a120 33bb")).what, "an answer with a wrong checksum");
   EXPECT_EQ(find_rtu_answer(kReadLux, from_hex("01 03 04 0007")).what, "an answer that stopped half-way");

@@ -33,7 +33,7 @@ TEST(ModbusReadSchedule, ReadsNeighboursOfAUnitTogether) {
   EXPECT_EQ(due[3].request.unit, 2);
 }
 
-TEST(ModbusReadSchedule, KeepsToTheLargestReadOfTheProductAndToSingleReadsOnceRefused) {
+TEST(ModbusReadSchedule, KeepsToTheLargestReadAndToSingleReadsOnceRefused) {
   Rig rig = rig_with(bus_of("modbus_tcp"));
   auto map = std::make_shared<RegisterMap>();
   map->largest_read = 4;
@@ -67,7 +67,7 @@ TEST(ModbusWriteSchedule, SwitchesNeighbouringCoilsTogetherAndNeverWithRegisters
   EXPECT_EQ(schedule.request_for(runs[2]).first_register, 7);
 }
 
-TEST(ModbusRegisters, ARelayIsOnFromAHalfAndDoesNotChatter) {
+TEST(ModbusRegisters, ARelayTurnsOnAtHalfWithoutChattering) {
   ModbusPatch relay;
   relay.coil = true;
   const auto on = words_from_drive(0.5, relay), off = words_from_drive(0.49, relay);
@@ -79,7 +79,7 @@ TEST(ModbusRegisters, ARelayIsOnFromAHalfAndDoesNotChatter) {
   EXPECT_EQ(words_from_drive(0, relay, on), off);
 }
 
-TEST(ModbusWriteSchedule, KeepsToTheLargestWriteOfTheProductAndCountsBothRegistersOfANumber) {
+TEST(ModbusWriteSchedule, KeepsToTheLargestWriteCountingBothRegistersOfANumber) {
   Rig rig = rig_with(bus_of("modbus_tcp"));
   auto map = std::make_shared<RegisterMap>();
   map->largest_write = 5;
@@ -97,7 +97,7 @@ TEST(ModbusWriteSchedule, KeepsToTheLargestWriteOfTheProductAndCountsBothRegiste
   EXPECT_EQ(request.values, (std::vector<std::uint16_t>{0x3F00, 0, 0x3F00, 0}));
 }
 
-TEST(ModbusUnitRules, AProductsAnswerTimeIsTheTimeoutOnALineAndTheLeastBehindAGateway) {
+TEST(ModbusUnitRules, AnAnswerTimeSetsTheLineTimeoutAndTheGatewayMinimum) {
   Rig rig = rig_with(bus_of("modbus_rtu"));
   auto quick = std::make_shared<RegisterMap>();
   quick->answer_time = milliseconds(50);
@@ -114,7 +114,7 @@ TEST(ModbusUnitRules, AProductsAnswerTimeIsTheTimeoutOnALineAndTheLeastBehindAGa
   EXPECT_EQ(gateway.at(2).timeout, milliseconds(930));
 }
 
-TEST(ModbusReadSchedule, CallsThatAreALittleEarlyOrLateKeepTheRate) {
+TEST(ModbusReadSchedule, KeepsItsRateWithSlightlyEarlyOrLateCalls) {
   Rig rig = rig_with(bus_of("modbus_tcp"));
   add_meter(rig, "a", 1, 4);
   for (const double every_ms : {100.0, 115.0, 130.0}) {
@@ -135,7 +135,7 @@ TEST(ModbusReadSchedule, CallsThatAreALittleEarlyOrLateKeepTheRate) {
   }
 }
 
-TEST(ModbusUnitBackoff, AsksASilentUnitEverMoreSeldom) {
+TEST(ModbusUnitBackoff, PollsASilentUnitLessAndLess) {
   UnitBackoff units;
   EXPECT_TRUE(units.may_ask(1, at_ms(0)));
   units.silent(1, at_ms(0), milliseconds(400), {});
@@ -153,7 +153,7 @@ TEST(ModbusUnitBackoff, AsksASilentUnitEverMoreSeldom) {
   EXPECT_FALSE(units.is_silent(1));
 }
 
-TEST(ModbusUnitBackoff, AllSilentUnitsShareATwentiethOfTheTimeAndEachHasItsTurn) {
+TEST(ModbusUnitBackoff, SilentUnitsShareATwentiethOfTheTimeInTurn) {
   constexpr int kDead = 10;
   constexpr Duration kTimeout = milliseconds(200);
   Rig rig = rig_with(bus_of("modbus_tcp"));
@@ -192,7 +192,7 @@ TEST(ModbusUnitBackoff, AllSilentUnitsShareATwentiethOfTheTimeAndEachHasItsTurn)
 }
 
 // This acknowledges a blackout.
-TEST(ModbusWriteSchedule, IsConfirmedWhenEachDeviceHasAcknowledgedWhatIsWantedLast) {
+TEST(ModbusWriteSchedule, IsConfirmedOnceEveryDeviceHasAcknowledgedTheLatestLevels) {
   Rig rig = rig_with(bus_of("modbus_tcp"));
   add_modbus(rig, "near", 1, 2);
   add_modbus(rig, "far", 2, 2);

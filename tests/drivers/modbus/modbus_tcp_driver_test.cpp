@@ -91,7 +91,7 @@ TEST(ModbusTcpDriver, WritesNeighboursTogetherAndLoneRegistersAlone) {
   EXPECT_EQ(requests[2], from_hex("0003 0000 0006 0b 06 0002 01f4"));
 }
 
-TEST(ModbusTcpDriver, WritesAgainOnlyWhatChangedOrNeedsRefreshing) {
+TEST(ModbusTcpDriver, RewritesOnlyChangedOrExpiringRegisters) {
   ModbusBench bench(well);
   add_modbus(bench.rig, "a", 1, 0);
   bench.start();
@@ -194,7 +194,7 @@ TEST(ModbusTcpDriver, ReturnsWithinItsBoundFromEveryKindOfBadPeer) {
   }
 }
 
-TEST(ModbusTcpDriver, TakesEveryGarbledAnswerForAProtocolFaultAndResumes) {
+TEST(ModbusTcpDriver, TreatsEveryGarbledAnswerAsAProtocolFaultAndResumes) {
   const std::map<std::string, std::function<void(Bytes&)>> spoil = {
       {"wrong transaction", [](Bytes& b) { b[1] = static_cast<std::uint8_t>(b[1] + 1); }},
       {"wrong protocol", [](Bytes& b) { b[3] = 1; }},
@@ -234,7 +234,7 @@ TEST(ModbusTcpDriver, TakesEveryGarbledAnswerForAProtocolFaultAndResumes) {
   }
 }
 
-TEST(ModbusTcpDriver, LeavesASilentUnitAloneForASecondSoThatTheOthersKeepTheirPace) {
+TEST(ModbusTcpDriver, SkipsASilentUnitForASecondSoThatOthersKeepTheirPace) {
   ModbusBench bench([](const Bytes& request) { return request[6] == 2 ? ScriptedAnswer{} : well(request); });
   for (int unit = 1; unit <= 3; ++unit) add_meter(bench.rig, "meter-" + std::to_string(unit), unit, 2);
   bench.start();
@@ -290,7 +290,7 @@ TEST(ModbusTcpDriver, SkipsALateAnswerToAnEarlierRequest) {
   EXPECT_EQ(bench.peer.connections(), 1);
 }
 
-TEST(ModbusTcpDriver, NamesAnExceptionAndGoesOnWithTheOthers) {
+TEST(ModbusTcpDriver, NamesAnExceptionAndContinuesWithTheOthers) {
   ModbusBench bench([](const Bytes& request) {
     return request[6] == 1 ? ScriptedAnswer{exception_answer(request, 4)} : well(request);
   });
@@ -309,7 +309,7 @@ TEST(ModbusTcpDriver, NamesAnExceptionAndGoesOnWithTheOthers) {
   EXPECT_EQ(bench.peer.connections(), 1);
 }
 
-TEST(ModbusTcpDriver, WritesSinglyToADeviceThatDoesNotKnowFunction16) {
+TEST(ModbusTcpDriver, WritesSinglyToADeviceWithoutFunction16) {
   ModbusBench bench([](const Bytes& request) {
     return request[7] == 16 ? ScriptedAnswer{exception_answer(request, 1)} : well(request);
   });
@@ -323,7 +323,7 @@ TEST(ModbusTcpDriver, WritesSinglyToADeviceThatDoesNotKnowFunction16) {
   EXPECT_EQ(bench.health("a").life, Life::active);
 }
 
-TEST(ModbusTcpDriver, ReconnectsAtOnceWhenThePeerHasClosedAnIdleConnection) {
+TEST(ModbusTcpDriver, ReconnectsAtOnceAfterThePeerClosedAnIdleConnection) {
   bool close = true;
   ModbusBench bench([&close](const Bytes& request) {
     return ScriptedAnswer{right_answer(request), milliseconds(0), milliseconds(0), close};
@@ -362,7 +362,7 @@ TEST(ModbusTcpDriver, StartsFaultedWithoutAPeerAndConnectsByItselfWhenOneAppears
   EXPECT_EQ(driver->health(now).at(0).life, Life::active);
 }
 
-TEST(ModbusTcpDriver, BelievesNoReadingFarBeyondTheMetersRange) {
+TEST(ModbusTcpDriver, RejectsReadingsFarBeyondTheMetersRange) {
   ModbusBench bench([](const Bytes& request) {
     ScriptedAnswer answer{right_answer(request)};
     std::fill(answer.bytes.begin() + 9, answer.bytes.end(), std::uint8_t{0xFF});
@@ -377,7 +377,7 @@ TEST(ModbusTcpDriver, BelievesNoReadingFarBeyondTheMetersRange) {
   EXPECT_EQ(bench.health("the-bus").life, Life::active);
 }
 
-TEST(ModbusTcpDriver, SendsNothingForASetpointThatCannotBeSent) {
+TEST(ModbusTcpDriver, SendsNothingForAnInvalidSetpoint) {
   ModbusBench bench(well);
   add_modbus(bench.rig, "a", 1, 0);
   bench.start();

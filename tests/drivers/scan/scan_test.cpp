@@ -47,7 +47,7 @@ class MadeUpSystem {
   fs::path root_;
 };
 
-TEST(SystemScan, FindsSerialPortsByTheirLastingNamesAndWhatTheyAre) {
+TEST(SystemScan, FindsSerialPortsWithTheirStableNamesAndKinds) {
   const MadeUpSystem system;
   const std::string usb = "sys/devices/pci0/usb1/1-2/";
   system.file(usb + "product", "FT232R USB UART");
@@ -76,7 +76,7 @@ TEST(SystemScan, FindsSerialPortsByTheirLastingNamesAndWhatTheyAre) {
   EXPECT_EQ(found[1].detail, "ttyUSB0, serial number A50285BI");
 }
 
-TEST(SystemScan, FindsCanInterfacesAndSaysWhichAreDown) {
+TEST(SystemScan, FindsCanInterfacesAndReportsWhichAreDown) {
   const MadeUpSystem system;
   system.file("sys/class/net/lo/type", "772");
   system.file("sys/class/net/can1/type", "280");
@@ -149,7 +149,7 @@ TEST(NetworkScan, FindsAnArtNetNodeByItsAnswer) {
   EXPECT_EQ(found[0].detail, "puts out universe 18 (0:1:2), merging two senders, 19 (0:1:3)");
 }
 
-TEST(NetworkScan, HearsWhatAnSacnSourceSaysThatItSends) {
+TEST(NetworkScan, FindsAnSacnSourceByItsUniverseDiscovery) {
   ScanOptions options;
   options.interface = "127.0.0.1";
   const auto scan = make_sacn_scan(options);

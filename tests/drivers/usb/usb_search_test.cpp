@@ -28,7 +28,7 @@ UsbSearch search() {
   return search;
 }
 
-TEST(UsbSearch, GoesByIdSerialAndPort) {
+TEST(UsbSearch, MatchesIdSerialAndPort) {
   UsbSearch wanted = search();
   EXPECT_TRUE(matches(wanted, at("1-1", "A")));
   wanted.serial = "A";
@@ -42,7 +42,7 @@ TEST(UsbSearch, GoesByIdSerialAndPort) {
   EXPECT_FALSE(may_match(wanted, other));
 }
 
-TEST(UsbSearch, ASharedIdNeedsTheNamesAsWell) {
+TEST(UsbSearch, ASharedIdRequiresMatchingNames) {
   UsbSearch wanted = search();
   wanted.kinds = {{0x16c0, 0x05dc, "www.anyma.ch", "uDMX"}, {0x03eb, 0x8888}};
   UsbCandidate candidate = at("2-1");
@@ -58,7 +58,7 @@ TEST(UsbSearch, ASharedIdNeedsTheNamesAsWell) {
   EXPECT_TRUE(matches(wanted, candidate));
 }
 
-TEST(UsbSearch, RefusesToGuessAmongSeveralAndSaysWhatWouldHelp) {
+TEST(UsbSearch, RefusesAnAmbiguousMatchWithARemedy) {
   const UsbCandidate one[] = {at("1-1", "A")}, two[] = {at("1-1", "A"), at("1-2", "B")};
   EXPECT_EQ(choose(search(), one).value(), 0u);
   EXPECT_EQ(choose(search(), two).error().detail,
@@ -66,7 +66,7 @@ TEST(UsbSearch, RefusesToGuessAmongSeveralAndSaysWhatWouldHelp) {
   EXPECT_EQ(choose(search(), {}).error().detail, "no widget is plugged in: check the cable, `lsusb` lists it");
 }
 
-TEST(UsbSearch, PortPathsAreAsTheKernelWritesThem) {
+TEST(UsbSearch, PortPathsFollowTheKernelsNotation) {
   const std::uint8_t ports[] = {1, 4};
   EXPECT_EQ(port_path(3, ports), "3-1.4");
   for (const char* good : {"1-1", "1-1.4", "10-2.3.4"}) EXPECT_TRUE(is_port_path(good)) << good;
@@ -75,7 +75,7 @@ TEST(UsbSearch, PortPathsAreAsTheKernelWritesThem) {
   }
 }
 
-TEST(UsbStrings, ReadUtf16AndNothingThatIsNotThere) {
+TEST(UsbStrings, ReadUtf16WithinTheirLength) {
   EXPECT_EQ(text_of_string_descriptor(from_hex("0a 03 75 00 44 00 4d 00 58 00")), "uDMX");
   EXPECT_EQ(text_of_string_descriptor(from_hex("06 03 b5 00 ac 20")), "µ€");
   EXPECT_EQ(text_of_string_descriptor(from_hex("06 03 3d d8 a1 dc")), "\xf0\x9f\x92\xa1");

@@ -22,7 +22,7 @@ AxisDrive enabled(int mode, const AxisTruth& truth = {}) {
 
 int state_bits(const AxisDrive& drive) { return drive.statusword() & 0x6F; }
 
-TEST(AxisDrive, GoesThroughTheStatesOfCiA402) {
+TEST(AxisDrive, FollowsTheStatesOfCiA402) {
   AxisDrive drive({}, 0);
   EXPECT_EQ(drive.statusword(), 0) << "without power";
   drive.set_power(true);
@@ -55,7 +55,7 @@ TEST(AxisDrive, GoesThroughTheStatesOfCiA402) {
   EXPECT_EQ(after(0x80) & 0x4F, 0x40) << "rising edge";
 }
 
-TEST(AxisDrive, MovesAsTheClosedFormSaysAndReachesItsTarget) {
+TEST(AxisDrive, MovesByTheClosedFormAndReachesItsTarget) {
   AxisDrive drive = enabled(1);
   drive.parameters.speed = 4000;  // 40 °/s
   drive.parameters.acceleration = drive.parameters.deceleration = 8000;
@@ -78,7 +78,7 @@ TEST(AxisDrive, MovesAsTheClosedFormSaysAndReachesItsTarget) {
   }
 }
 
-TEST(AxisDrive, QueuesASetPointThatDoesNotChangeAtOnce) {
+TEST(AxisDrive, QueuesASetPointWithoutImmediateChange) {
   AxisDrive drive = enabled(1);
   drive.parameters.speed = 4000;
   drive.parameters.target = 2000;
@@ -118,7 +118,7 @@ TEST(AxisDrive, KeepsToItsSoftLimitsOnceHomed) {
   EXPECT_NEAR(drive.position(), 1000, 1);
 }
 
-TEST(AxisDrive, HaltsAndABlockedOneHasAFollowingError) {
+TEST(AxisDrive, HaltsAndReportsAFollowingErrorWhenBlocked) {
   AxisDrive drive = enabled(1);
   drive.parameters.speed = 4000;
   drive.parameters.target = 20000;
@@ -137,7 +137,7 @@ TEST(AxisDrive, HaltsAndABlockedOneHasAFollowingError) {
   EXPECT_EQ(drive.statusword() & 0x4F, 0x08);
 }
 
-TEST(AxisMechanics, FrictionPlayAndEndStops) {
+TEST(AxisMechanics, HasFrictionPlayAndEndStops) {
   AxisTruth truth;
   truth.stop_max_deg = 5;
   AxisMechanics axis(truth, 0);

@@ -19,7 +19,7 @@ double mean_cd_m2(const Picture& picture) {
   return sum / static_cast<double>(picture.luminance_cd_m2.size());
 }
 
-TEST(SimCamera, SeesTheTrueLightOfTheWorld) {
+TEST(SimCamera, ShowsTheTrueLightOfTheWorld) {
   PhotographedRoom room;
   const double planned_cd_m2 = mean_cd_m2(room.taken({}, {}));
   Camera view;

@@ -10,7 +10,7 @@ namespace {
 
 using namespace camera_fixture;
 
-TEST(SimCamera, GivesTheSamePictureForTheSameShotAndNoLightForNone) {
+TEST(SimCamera, GivesTheSamePictureForTheSameShotAndBlackWithoutLight) {
   PhotographedRoom room;
   Shot shot;
   shot.threads = 1;

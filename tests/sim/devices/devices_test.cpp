@@ -12,7 +12,7 @@
 namespace luxrig::sim {
 namespace {
 
-TEST(SimulatedDimmer, TheTrueCurveIsTheNominalOneRaisedToItsExponent) {
+TEST(SimulatedDimmer, RaisesTheNominalCurveToItsExponent) {
   for (const DimmerCurve curve : {DimmerCurve::linear, DimmerCurve::square, DimmerCurve::s_curve}) {
     Dimmer dimmer(curve, 1.08, 0);
     for (const double drive : {0.0, 0.1, 0.5, 0.9, 1.0}) {
@@ -30,7 +30,7 @@ TEST(SimulatedDimmer, ArrivesInFiniteTime) {
   EXPECT_EQ(dimmer.level(), 0.37);
 }
 
-TEST(SimulatedHead, TurnsAtItsSpeedAndStopsWhereItWasTold) {
+TEST(SimulatedHead, TurnsAtItsSpeedAndStopsAtItsTarget) {
   Head head(tiny_rig().fixtures[1]);  // 180°/s pan, 90°/s tilt
   head.set_target({kPi / 2, -kPi / 2});
   for (int i = 0; i < 50; ++i) head.step(0.01);
@@ -42,7 +42,7 @@ TEST(SimulatedHead, TurnsAtItsSpeedAndStopsWhereItWasTold) {
   EXPECT_EQ(head.joints().tilt_rad, -kPi / 2);
 }
 
-TEST(SimulatedHead, EndStopsHold) {
+TEST(SimulatedHead, StaysWithinItsEndStops) {
   Head head(tiny_rig().fixtures[1]);
   head.set_target({100, -100});
   for (int i = 0; i < 1000; ++i) head.step(0.01);
@@ -142,7 +142,7 @@ TEST(SimulatedDmxFixture, ReadsSixteenBitJointsAndDimmer) {
   EXPECT_DOUBLE_EQ(order.drive, 32768.0 / 65535.0);
 }
 
-TEST(SimulatedDmxFixture, IsDarkWhileItsShutterIsShut) {
+TEST(SimulatedDmxFixture, IsDarkWhileItsShutterIsClosed) {
   const Rig rig = tiny_rig();
   const Fixture& head = rig.fixtures[1];
   std::array<std::uint8_t, kDmxSlots> slots;
@@ -152,7 +152,7 @@ TEST(SimulatedDmxFixture, IsDarkWhileItsShutterIsShut) {
   EXPECT_EQ(decode_slots(head, std::get<DmxPatch>(head.patch), slots).drive, 0);
 }
 
-TEST(SimulatedDmxFixture, APatchPastTheUniverseReadsZeroThere) {
+TEST(SimulatedDmxFixture, ReadsZeroBeyondTheUniverse) {
   Fixture spot = tiny_rig().fixtures[0];
   DmxPatch patch{1, 512, {{SlotUse::dimmer, 0}, {SlotUse::dimmer_fine, 0}}};
   std::array<std::uint8_t, kDmxSlots> slots;

@@ -75,7 +75,7 @@ TEST(RdmResponder, AnswersAnUnmutedBranchAsPublished) {
   EXPECT_TRUE(responder.receive(at_s(0), below).empty());
 }
 
-TEST(RdmResponder, IsSilentToOthersRequestsAndToSpoiledOnes) {
+TEST(RdmResponder, IgnoresForeignAndCorruptRequests) {
   RdmResponder responder(identity_of());
   EXPECT_TRUE(responder.receive(at_s(0), write_rdm(request_of(0x20, 0x0060, {}, kLampUid + 1))).empty());
   EXPECT_TRUE(responder.receive(at_s(0), write_rdm(request_of(0x20, 0x0060, {}, kRdmEverybody))).empty());
@@ -88,7 +88,7 @@ TEST(RdmResponder, IsSilentToOthersRequestsAndToSpoiledOnes) {
   }
 }
 
-TEST(RdmResponder, TellsWhatItIs) {
+TEST(RdmResponder, DescribesItself) {
   Asked asked;
   const RdmFrame info = asked.get(0x0060);
   EXPECT_EQ(info.from, kLampUid);
@@ -99,7 +99,7 @@ TEST(RdmResponder, TellsWhatItIs) {
   EXPECT_EQ(asked.get(0x00e1, {1}).data, (Bytes{1, 0, 2, 'a', 's', ' ', 'p', 'a', 't', 'c', 'h', 'e', 'd'}));
 }
 
-TEST(RdmResponder, SaysWhyNot) {
+TEST(RdmResponder, NacksWithAReason) {
   Asked asked;
   const auto nack = [](const RdmFrame& answer) { return answer.port_or_type == 2 ? answer.data.at(1) : -1; };
   EXPECT_EQ(nack(asked.get(0x8001)), 0);
@@ -117,7 +117,7 @@ TEST(RdmResponder, SaysWhyNot) {
   EXPECT_EQ(asked.responder.address(), 42);
 }
 
-TEST(RdmResponder, TakesAddressLabelAndIdentify) {
+TEST(RdmResponder, AcceptsAddressLabelAndIdentify) {
   Asked asked;
   EXPECT_EQ(asked.set(0x00f0, {1, 0xff}).port_or_type, 0);
   EXPECT_EQ(asked.responder.address(), 511);
@@ -130,7 +130,7 @@ TEST(RdmResponder, TakesAddressLabelAndIdentify) {
   EXPECT_FALSE(asked.responder.identifies());  // obeyed, not answered
 }
 
-TEST(RdmResponder, NeedsTimeForLampHoursAndKeepsThemInItsQueue) {
+TEST(RdmResponder, DelaysLampHoursAndQueuesThem) {
   Asked asked;
   const RdmFrame timer = asked.get(0x0401);
   EXPECT_EQ(timer.port_or_type, 1);
@@ -145,7 +145,7 @@ TEST(RdmResponder, NeedsTimeForLampHoursAndKeepsThemInItsQueue) {
   EXPECT_EQ(asked.get(0x0020, {1}, at_s(0.4)).pid, 0x0401);  // repeats the last one
 }
 
-TEST(RdmResponder, TellsLongAnswersInParts) {
+TEST(RdmResponder, SendsLongAnswersInParts) {
   Asked asked;
   asked.responder = RdmResponder(identity_of(kLampUid, 100));
   const RdmFrame first = asked.get(0x0120);
@@ -161,7 +161,7 @@ TEST(RdmResponder, TellsLongAnswersInParts) {
   EXPECT_EQ(again.data, first.data);
 }
 
-TEST(RdmResponder, GetsWarmInItsLight) {
+TEST(RdmResponder, WarmsUpWhileLit) {
   Asked asked;
   const auto tenths = [&] {
     const RdmFrame value = asked.get(0x0201, {0});
@@ -176,7 +176,7 @@ TEST(RdmResponder, GetsWarmInItsLight) {
   EXPECT_EQ(asked.get(0x0403).data, Bytes{0});
 }
 
-TEST(RdmLine, ObeysTheFaultsOfItsMembers) {
+TEST(RdmLine, AppliesTheFaultsOfItsMembers) {
   Faults faults(1);
   RdmLine line(faults);
   line.add("a", identity_of(kLampUid));
@@ -200,7 +200,7 @@ TEST(RdmLine, ObeysTheFaultsOfItsMembers) {
   EXPECT_LT(answered, 260);
 }
 
-TEST(ArtnetRdmGate, TellsTablesInBlocksAndSearchesAnewWhenFlushed) {
+TEST(ArtnetRdmGate, SendsTablesInBlocksAndSearchesAgainWhenFlushed) {
   Faults faults(1);
   std::map<int, RdmLine> lines;
   RdmLine& line = lines.try_emplace(0x0123, faults).first->second;

@@ -9,13 +9,13 @@ namespace {
 
 using namespace std::chrono_literals;
 
-TEST(Faults, EveryKindHasANameThatLeadsBackToIt) {
+TEST(Faults, NamesOfKindsRoundTrip) {
   for (const FaultKind kind : all_faults()) EXPECT_EQ(fault_named(name_of(kind)), kind);
   EXPECT_EQ(all_faults().size(), 22u);
   EXPECT_FALSE(fault_named("tired"));
 }
 
-TEST(Faults, UnknownDeviceFaultOrValueIsRefusedWithTheRemedy) {
+TEST(Faults, UnknownDevicesFaultsAndValuesAreRefusedWithARemedy) {
   const Rig rig = tiny_rig();
   Faults faults;
   const auto device = faults.set_named(rig, "meter-9", "silent", true);
@@ -31,7 +31,7 @@ TEST(Faults, UnknownDeviceFaultOrValueIsRefusedWithTheRemedy) {
   EXPECT_TRUE(faults.set_named(rig, "bulb-1", "slow", true, 20));
 }
 
-TEST(Faults, OfTheBusAndOfTheDeviceAddUp) {
+TEST(Faults, OfBusAndDeviceAddUp) {
   Faults faults;
   faults.set("field", FaultKind::slow, true, 100);
   faults.set("meter-1", FaultKind::slow, true, 250);
@@ -54,7 +54,7 @@ TEST(Faults, LostExchangesHaveTheStatedShare) {
   EXPECT_NEAR(lost, 3000, 5 * std::sqrt(10000 * 0.3 * 0.7));
 }
 
-TEST(Faults, DuplicatedAndReorderedHaveTheirSharesAndAreDrawnApart) {
+TEST(Faults, DuplicatedAndReorderedAreDrawnIndependentlyWithTheirShares) {
   Faults faults;
   faults.set("dmx", FaultKind::duplicated, true, 0.2);
   faults.set("dmx", FaultKind::reordered, true, 0.4);
@@ -71,7 +71,7 @@ TEST(Faults, DuplicatedAndReorderedHaveTheirSharesAndAreDrawnApart) {
   EXPECT_NEAR(both, 800, 140);
 }
 
-TEST(Faults, ARevisionIsOfOneStateOnly) {
+TEST(Faults, EveryStateHasItsOwnRevision) {
   Faults faults;
   const std::uint64_t begun = faults.revision();
   faults.set("dmx", FaultKind::silent, true);
@@ -83,7 +83,7 @@ TEST(Faults, ARevisionIsOfOneStateOnly) {
   EXPECT_NE(faults.revision(), on);
 }
 
-TEST(Faults, AStuckMeterKeepsWhatItShowedAndALyingOneScales) {
+TEST(Faults, AStuckMeterRepeatsItsValueAndALyingOneScalesIt) {
   Faults faults;
   EXPECT_EQ(faults.shown_lx("meter-1", 100), 100);
   faults.set("meter-1", FaultKind::stuck, true);

@@ -89,7 +89,7 @@ Bytes artdmx_two_slots(std::uint8_t level) {
 const Bytes kReadMeter1 = {0, 1, 0, 0, 0, 6, 1, 3, 0, 2, 0, 2};
 const Bytes kWriteBulb500 = {0, 2, 0, 0, 0, 6, 10, 6, 0, 0, 0x01, 0xf4};
 
-TEST(RigServer, ASacnPacketRaisesTheFixtureThatListensThere) {
+TEST(RigServer, ASacnPacketRaisesItsFixture) {
   Served served("sacn");
   const Client desk(SOCK_DGRAM, served.server->ports().at("dmx"));
   desk.send(sacn_one_slot(0, 255));
@@ -129,7 +129,7 @@ TEST(RigServer, ASilentFixtureOrBusKeepsItsLight) {
   }
 }
 
-TEST(RigServer, ALampThatBurnsOutOrHasNoPowerGoesDarkThoughNothingMoreIsSent) {
+TEST(RigServer, ABurntOutOrUnpoweredLampGoesDarkWithoutFurtherPackets) {
   for (const FaultKind fault : {FaultKind::lamp_failure, FaultKind::unpowered}) {
     for (const char* driver : {"sacn", "artnet"}) {
       Served served(driver);
@@ -170,7 +170,7 @@ TEST(RigServer, ASlowBusActsLateAndInOrder) {
   EXPECT_EQ(served.world->drives()[0], 1);
 }
 
-TEST(RigServer, AnOvertakenSacnPacketIsDroppedAndAnOvertakenArtDmxWithoutANumberIsObeyedLate) {
+TEST(RigServer, DropsOvertakenSacnButAppliesOvertakenArtDmxWithoutANumber) {
   for (const char* driver : {"sacn", "artnet"}) {
     const bool sacn = std::string_view(driver) == "sacn";
     Served served(driver);
@@ -188,7 +188,7 @@ TEST(RigServer, AnOvertakenSacnPacketIsDroppedAndAnOvertakenArtDmxWithoutANumber
   }
 }
 
-TEST(RigServer, ADoubledPacketIsAsGoodAsOne) {
+TEST(RigServer, ADuplicatedPacketActsOnce) {
   Served served("sacn");
   const Client desk(SOCK_DGRAM, served.server->ports().at("dmx"));
   served.faults.set("dmx", FaultKind::duplicated, true, 1);
@@ -214,7 +214,7 @@ TEST(RigServer, ADeadBusComesBackOnTheSamePort) {
   EXPECT_EQ(served.world->drives()[0], 1);
 }
 
-TEST(RigServer, AMeterReadsInMilliluxAndADimmerTakesItsShareOfFullScale) {
+TEST(RigServer, AMeterReadsInMilliluxAndADimmerScalesToFull) {
   Served served("sacn");
   const Client master(SOCK_STREAM, served.server->ports().at("field"));
   ASSERT_TRUE(master.connected());
@@ -230,7 +230,7 @@ TEST(RigServer, AMeterReadsInMilliluxAndADimmerTakesItsShareOfFullScale) {
   EXPECT_EQ(master.received(1000), (Bytes{0, 1, 0, 0, 0, 7, 1, 3, 4, 0x00, 0x01, 0x86, 0xa0}));
 }
 
-TEST(RigServer, FaultsOfAMeterTouchNoOtherUnit) {
+TEST(RigServer, FaultsOfAMeterAffectNoOtherUnit) {
   Served served("sacn");
   const Client master(SOCK_STREAM, served.server->ports().at("field"));
   Bytes other = kReadMeter1;
@@ -250,7 +250,7 @@ TEST(RigServer, FaultsOfAMeterTouchNoOtherUnit) {
   EXPECT_EQ(master.received(1000), (Bytes{0, 1, 0, 0, 0, 3, 1, 0x83, 6}));
 }
 
-TEST(RigServer, ASlowMeterAnswersWhenItsTimeHasCome) {
+TEST(RigServer, ASlowMeterAnswersAfterItsDelay) {
   Served served("sacn");
   const Client master(SOCK_STREAM, served.server->ports().at("field"));
   served.faults.set("meter-1", FaultKind::slow, true, 300);
@@ -263,7 +263,7 @@ TEST(RigServer, ASlowMeterAnswersWhenItsTimeHasCome) {
   EXPECT_EQ(master.received(1000).size(), 13u);
 }
 
-TEST(RigServer, HangsUpOnWhatCannotBeModbusAndWhenItsBusDies) {
+TEST(RigServer, DisconnectsOnInvalidModbusAndWhenItsBusDies) {
   Served served("sacn");
   const int port = served.server->ports().at("field");
   const Client rude(SOCK_STREAM, port), polite(SOCK_STREAM, port);
@@ -287,7 +287,7 @@ TEST(RigServer, HangsUpOnWhatCannotBeModbusAndWhenItsBusDies) {
   EXPECT_TRUE(Client(SOCK_STREAM, port).connected());
 }
 
-TEST(RigServer, APortThatIsTakenAndADriverItDoesNotKnowAreNamed) {
+TEST(RigServer, NamesATakenPortAndAnUnknownDriver) {
   Served served("sacn");
   const int port = served.server->ports().at("field");
   const auto again = RigServer::open(served.rig, *served.world, served.faults, {{"field", port}});

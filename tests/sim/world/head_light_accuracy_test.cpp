@@ -14,7 +14,7 @@ using namespace head_light_fixture;
 
 // The error stated in head_light.h. Interpolation blurs the patch lit by the beam: the darker the walls, the larger
 // that patch's share of the indirect light.
-TEST(HeadLight, InBetweenTheIndirectPartIsAsFarOffAsTheHeaderStates) {
+TEST(HeadLight, InterpolatedIndirectPartErrsAsStated) {
   const std::vector<Joints> set = spread_aims(kRange, 32), aims = random_aims(48, 1);
   for (const auto& [reflectance, stated] : {std::pair{0.3, 0.23}, {0.5, 0.17}}) {
     const Room room(reflectance);

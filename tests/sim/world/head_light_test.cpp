@@ -14,7 +14,7 @@ namespace {
 
 using namespace head_light_fixture;
 
-TEST(HeadLight, DirectPartIsThatOfTheDirectEvaluatorAtAnyAim) {
+TEST(HeadLight, DirectPartMatchesTheDirectEvaluatorAtAnyAim) {
   const Room room(0.5);
   const std::vector<Joints> aims = random_aims(500, 3);
   std::vector<Emitter> emitters;
@@ -34,7 +34,7 @@ TEST(HeadLight, DirectPartIsThatOfTheDirectEvaluatorAtAnyAim) {
   }
 }
 
-TEST(HeadLight, DirectPartOfALampWithSizeAndTiltIsThePlannersToo) {
+TEST(HeadLight, DirectPartOfALampWithSizeAndTiltMatchesThePlanner) {
   const Room room(0.5);
   HeadSamples head;
   head.fixture = kFixture;
@@ -101,7 +101,7 @@ TEST(HeadLight, DirectPartFollowsTheZoom) {
   }
 }
 
-TEST(HeadLight, OfALampWithSizeAScreenHidesItsShare) {
+TEST(HeadLight, AScreenHidesItsShareOfALampWithSize) {
   // A disk of 1 m; a screen half way to the receiver below its middle covers x < 0.
   const Emitter lamp{
       make_lambertian(1000), {Mat3::Identity(), Vec3::Zero()}, {LuminousShape::Kind::disk, Vec3(1, 0, 0)}};
@@ -134,7 +134,7 @@ TEST(HeadLight, AReceiverThatTheHeadCannotSeeHasNoDirectLight) {
   EXPECT_GT(lux[1], 0);
 }
 
-TEST(HeadLight, AtAnAimOfItsSetTheIndirectPartIsThatAimsOwn) {
+TEST(HeadLight, IndirectPartIsExactAtItsSampledAims) {
   const Room room(0.5);
   const std::vector<Joints> set = spread_aims(kRange, 32);
   const auto count = static_cast<Eigen::Index>(set.size());
@@ -174,7 +174,7 @@ TEST(SpreadAims, StayInRangeAndReachAllOfIt) {
   }
 }
 
-TEST(SpreadAims, LeaveNoGapWiderThanTheirNumberMakes) {
+TEST(SpreadAims, LeaveNoGapLargerThanTheirNumberImplies) {
   const std::vector<Joints> aims = spread_aims(kRange, 32);
   ASSERT_EQ(aims.size(), 32u);
   double widest_rad = 0;
@@ -190,7 +190,7 @@ TEST(SpreadAims, LeaveNoGapWiderThanTheirNumberMakes) {
   EXPECT_LT(widest_rad, 1.6 * std::acos(1 - (1 - std::cos(0.75 * kPi)) / 32));
 }
 
-TEST(BeamMount, IsMinusZOfTheLampInFrameMount) {
+TEST(BeamMount, IsMinusZOfTheLampInTheMountFrame) {
   for (const Joints& joints : random_aims(100, 6)) {
     const Vec3 beam = -world_from_lamp(Pose{}, joints, kRoll_rad).rotation.col(2);
     EXPECT_LT((beam - beam_mount(joints)).norm(), 1e-12);

@@ -58,7 +58,7 @@ Rig odd_rig() {
   return rig;
 }
 
-TEST(TrueTransport, WithoutDeviationsIsThePlannersLuminaireByLuminaire) {
+TEST(TrueTransport, MatchesThePlannerPerLuminaireWithoutDeviations) {
   const Rig rig = odd_rig();
   const auto scene = build_scene(rig);
   ASSERT_TRUE(scene);

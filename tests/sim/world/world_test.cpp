@@ -36,14 +36,14 @@ TEST(World, SameWritesAtTheSameTimesGiveTheSameReadings) {
   EXPECT_EQ(readings_of_show(7, 10ms), readings_of_show(7, 10ms));
 }
 
-TEST(World, TheWayInWhichItIsAdvancedChangesNothing) {
+TEST(World, DoesNotDependOnTheStepsOfItsAdvance) {
   EXPECT_EQ(readings_of_show(7, 10ms), readings_of_show(7, 230ms));
   EXPECT_EQ(readings_of_show(7, 10ms), readings_of_show(7, 5s));
 }
 
-TEST(World, AnotherSeedIsAnotherWorld) { EXPECT_NE(readings_of_show(7, 10ms), readings_of_show(8, 10ms)); }
+TEST(World, AnotherSeedGivesAnotherWorld) { EXPECT_NE(readings_of_show(7, 10ms), readings_of_show(8, 10ms)); }
 
-TEST(World, DeviationsStayWithinWhatIsStated) {
+TEST(World, DeviationsStayWithinTheirStatedRanges) {
   Rig rig = tiny_rig();
   Deviations deviations;
   double min_output = 2, max_output = 0;
@@ -75,7 +75,7 @@ TEST(World, DeviationsStayWithinWhatIsStated) {
   for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(std::sqrt(squares[axis] / fixtures), 0.01, 0.0007);
 }
 
-TEST(World, WithoutDeviationsLightIsTheMatrixTimesTheLevels) {
+TEST(World, LightIsTheMatrixTimesTheLevelsWithoutDeviations) {
   const Rig rig = tiny_rig();
   const auto world = tiny_world(rig);
   world->set_drive(0, 0.5);
@@ -85,7 +85,7 @@ TEST(World, WithoutDeviationsLightIsTheMatrixTimesTheLevels) {
   EXPECT_DOUBLE_EQ(world->luxmeters()[1].lux, 0.5 * 30 + 0.25 * 20);
 }
 
-TEST(World, DaylightIsThereWhateverTheDrives) {
+TEST(World, DaylightDoesNotDependOnTheDrives) {
   const Rig rig = tiny_rig();  // table: at most 200 lx
   const Eigen::VectorXd daylight_lx{{150, 140, 30}};
   const auto made = World::make(rig, Deviations::none(), tiny_light(), nullptr, daylight_lx);
@@ -125,7 +125,7 @@ TEST(World, LampsFollowWithAFirstOrderLag) {
   }
 }
 
-TEST(World, PeaksAreThoseOfEveryStep) {
+TEST(World, PeaksCoverEveryStep) {
   const Rig rig = tiny_rig();
   const auto world = tiny_world(rig);
   world->set_drive(0, 1);
@@ -138,7 +138,7 @@ TEST(World, PeaksAreThoseOfEveryStep) {
   EXPECT_DOUBLE_EQ(world->points()[0].max_lux_seen, 10);
 }
 
-TEST(World, EveryStretchAboveALimitIsRecorded) {
+TEST(World, EveryPeriodAboveALimitIsRecorded) {
   const Rig rig = tiny_rig();  // table: at most 200 lx
   const auto world = tiny_world(rig);
   world->set_drive(2, 1);  // 200 lx: at the limit, not above
@@ -160,7 +160,7 @@ TEST(World, EveryStretchAboveALimitIsRecorded) {
   EXPECT_EQ(world->violations()[1].began, at_s(0.41));
 }
 
-TEST(World, ADriveThatNoWireCanCarryDoesNoHarm) {
+TEST(World, ToleratesImpossibleDrives) {
   const Rig rig = tiny_rig();
   const auto world = tiny_world(rig);
   world->set_drive(0, 7);
@@ -171,7 +171,7 @@ TEST(World, ADriveThatNoWireCanCarryDoesNoHarm) {
   EXPECT_EQ(world->drives(), (std::vector<double>{1, 0, 0.5}));
 }
 
-TEST(World, ATransportOfAnotherShapeOrWithNonsenseIsRefused) {
+TEST(World, AMismatchedOrInvalidTransportIsRefused) {
   const Rig rig = tiny_rig();
   const Deviations none = Deviations::none();
   EXPECT_FALSE(World::make(rig, none, Eigen::MatrixXd::Zero(2, 3)));
@@ -182,7 +182,7 @@ TEST(World, ATransportOfAnotherShapeOrWithNonsenseIsRefused) {
   EXPECT_FALSE(World::make(rig, none, Eigen::MatrixXd::Constant(3, 3, std::numeric_limits<double>::quiet_NaN())));
 }
 
-TEST(World, AnEmptyRigIsAWorldToo) {
+TEST(World, AnEmptyRigMakesAValidWorld) {
   const auto world = World::make(Rig{}, Deviations{}, Eigen::MatrixXd(0, 0));
   ASSERT_TRUE(world);
   (*world)->advance(at_s(1));

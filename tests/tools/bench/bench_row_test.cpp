@@ -12,7 +12,7 @@
 namespace luxrig {
 namespace {
 
-TEST(BenchRow, CsvHasTheContractsColumnsFirst) {
+TEST(BenchRow, CsvStartsWithTheContractsColumns) {
   const std::vector<BenchRow> rows = {{"cube", "path", 0.004, 1.5, 0.005, 2.0, {{"rays", "12"}}},
                                       {"cube", "slow", 0.004, 2.5, 0.005, 2.0, {{"rays", "13"}}},
                                       {"free", "path", 0.5, 0.25, {}, {}, {{"rays", "14"}}}};
@@ -23,7 +23,7 @@ TEST(BenchRow, CsvHasTheContractsColumnsFirst) {
             "free,path,0.5,0.25,,,,14\n");
 }
 
-TEST(BenchRow, ARefusedCaseHasAnEmptyErrorAndNeitherMeetsNorMissesATarget) {
+TEST(BenchRow, ARefusedCaseHasNoErrorAndNoVerdict) {
   const std::vector<BenchRow> rows = {{"sky", "direct", std::nan(""), 0, {}, {}, {{"note", "refused"}}}};
   EXPECT_EQ(csv_of(rows),
             "case,method,error,seconds,target_error,target_seconds,met,note\n"
@@ -31,11 +31,11 @@ TEST(BenchRow, ARefusedCaseHasAnEmptyErrorAndNeitherMeetsNorMissesATarget) {
   EXPECT_NE(write_plot(rows, "test", testing::TempDir() + "/bench_nothing.png"), "");
 }
 
-TEST(BenchRow, OfNoRowsCsvIsTheHeader) {
+TEST(BenchRow, CsvWithoutRowsIsTheHeader) {
   EXPECT_EQ(csv_of({}), "case,method,error,seconds,target_error,target_seconds,met\n");
 }
 
-TEST(BenchRow, PlotIsAPngAndAFolderThatIsNotThereIsToldOf) {
+TEST(BenchRow, PlotIsAPngAndAMissingFolderIsReported) {
   const std::vector<BenchRow> rows = {{"cube", "path", 0.1, 0.1, {}, {}, {}}, {"cube", "path", 0, 1, {}, {}, {}}};
   const std::string file = testing::TempDir() + "/bench_plot.png";
   EXPECT_EQ(write_plot(rows, "test", file), "");
@@ -47,7 +47,7 @@ TEST(BenchRow, PlotIsAPngAndAFolderThatIsNotThereIsToldOf) {
   EXPECT_NE(write_plot({}, "test", file), "");
 }
 
-TEST(BenchRow, RowsAreKeptAsTheyAreMade) {
+TEST(BenchRow, RowsAreSavedAsTheyAreMade) {
   const std::string file = testing::TempDir() + "/bench_kept.csv";
   const std::vector<BenchRow> rows = {{"cube", "path", 0.5, 0.25, {}, {}, {{"rays", "14"}}},
                                       {"cube", "slow", 0.25, 0.5, {}, {}, {{"rays", "15"}}}};

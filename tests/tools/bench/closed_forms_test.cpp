@@ -16,7 +16,7 @@ double by_quadrature(const Vec3& normal, double h, double x0, double x1, double 
   });
 }
 
-TEST(GaussNodes, IsExactForPolynomialsOfTwiceItsDegree) {
+TEST(GaussNodes, AreExactForPolynomialsOfTwiceTheirDegree) {
   for (const int n : {1, 2, 5, 24, 64}) {
     const GaussNodes rule = gauss_rule(n);
     for (int power = 0; power < 2 * n; ++power) {
@@ -27,7 +27,7 @@ TEST(GaussNodes, IsExactForPolynomialsOfTwiceItsDegree) {
   }
 }
 
-TEST(ClosedForms, OfDisksAndRectanglesAreTheirIntegrals) {
+TEST(ClosedForms, OfDisksAndRectanglesMatchTheirIntegrals) {
   for (const double h : {0.3, 1.0, 4.0}) {
     EXPECT_NEAR(form_factor_of_parallel_disk(0.7, h, 0), by_quadrature(Vec3::UnitZ(), h, 0, 0.7, 0, 2 * kPi, true),
                 1e-12);
@@ -51,7 +51,7 @@ TEST(ClosedForms, OfDisksAndRectanglesAreTheirIntegrals) {
   }
 }
 
-TEST(ClosedForms, OfASphereIsItsIntegralAlsoWhenTheHorizonCutsIt) {
+TEST(ClosedForms, OfASphereMatchItsIntegralEvenAcrossTheHorizon) {
   const GaussNodes rule = gauss_rule(200);
   for (const double d : {1.05, 1.5, 4.0})
     for (const double theta : {0.0, 0.5, 1.2, 1.5, 1.8, 2.4}) {
@@ -98,7 +98,7 @@ TEST(ReferenceSky, OfTypeFiveIsUniform) {
 }
 
 // CIE S 011: the overcast sky (type 1) falls from the zenith to about a third of it at the horizon.
-TEST(ReferenceSky, OfTypeOneIsThreeTimesAsBrightInTheZenithAsAtTheHorizon) {
+TEST(ReferenceSky, OfTypeOneIsThreeTimesBrighterAtTheZenithThanAtTheHorizon) {
   const ReferenceSky sky(1, {0, 1, 1}, 3000);
   EXPECT_NEAR(sky.luminance_cd_m2(Vec3::UnitZ()), 3000, 1e-9);
   EXPECT_NEAR(sky.luminance_cd_m2(Vec3(1, 0, 1e-6).normalized()), 3000 / (1 + 4 * std::exp(-0.7)), 0.01);

@@ -20,7 +20,7 @@ std::string column(const BenchRow& row, const std::string& name) {
   return "none";
 }
 
-TEST(FaultCases, ARowHasMediansAndWorstAndIsMetWithoutCasesGoneAstray) {
+TEST(FaultCases, ARowHasMediansAndWorstAndIsMetWhenNoCaseStrays) {
   const FaultPlan plan{sim::FaultKind::slow, "the-bus"};
   std::vector<FaultOutcome> outcomes = {good(0.1, 1), good(0.5, 3), good(0.2, 2)};
   outcomes[1].reported_s = 0.25;
@@ -34,7 +34,7 @@ TEST(FaultCases, ARowHasMediansAndWorstAndIsMetWithoutCasesGoneAstray) {
   EXPECT_EQ(row_of_faults("sacn", plan, "level", outcomes, 2.5).met(), std::optional(false)) << "too slow";
 }
 
-TEST(FaultCases, OneAstrayOrNotRecoveredMissesTheTargetAndIsNamed) {
+TEST(FaultCases, AStrayOrUnrecoveredCaseMissesTheTargetAndIsNamed) {
   const FaultPlan plan{sim::FaultKind::lost, "the-bus"};
   std::vector<FaultOutcome> outcomes = {good(0.1, 1), good(0.1, 1)};
   outcomes[1].astray = "lamp-1 at 0.9";
@@ -48,7 +48,7 @@ TEST(FaultCases, OneAstrayOrNotRecoveredMissesTheTargetAndIsNamed) {
 }
 
 /// Runs in simulated time, so it is the same on any machine.
-TEST(FaultsSuite, NoFaultOfANetworkOrOfACanBusLeavesAnythingInAStateNobodyAskedFor) {
+TEST(FaultsSuite, NetworkAndCanFaultsLeaveNoDeviceInAnUnwantedState) {
   BenchOptions options;
   options.seeds = 4;
   std::size_t kinds = 0;

@@ -7,7 +7,7 @@
 namespace luxrig {
 namespace {
 
-TEST(TimeCounts, QuantilesAreToAMicrosecond) {
+TEST(TimeCounts, QuantilesAreAccurateToAMicrosecond) {
   const auto counts = std::make_unique<TimeCounts>();
   EXPECT_EQ(counts->quantile(0.5), 0);
   for (int i = 1; i <= 1000; ++i) counts->add(i * 1e-6);
@@ -20,7 +20,7 @@ TEST(TimeCounts, QuantilesAreToAMicrosecond) {
   EXPECT_EQ(counts->quantile(1), 3);
 }
 
-TEST(TimeCounts, TheHistogramCountsEachOnce) {
+TEST(TimeCounts, HistogramCountsEachTimeOnce) {
   const auto counts = std::make_unique<TimeCounts>();
   for (const double s : {10e-6, 50e-6, 51e-6, 0.0015, 0.06, 2.0}) counts->add(s);
   const std::string text = counts->histogram();

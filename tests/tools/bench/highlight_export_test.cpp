@@ -19,7 +19,7 @@ std::string geometry_of(const std::filesystem::path& file) {
   return from == std::string::npos ? std::string() : text.substr(from);
 }
 
-TEST(HighlightExport, WritesTheMadeUpObjectsAndTheShippedFriezeIsOneOfThem) {
+TEST(HighlightExport, WritesTheGeneratedObjectsIncludingTheShippedFrieze) {
   std::string name = (std::filesystem::temp_directory_path() / "luxrig-export-XXXXXX").string();
   const std::filesystem::path folder = ::mkdtemp(name.data());
   for (const BenchRow& row : export_highlight_objects(folder)) EXPECT_EQ(row.error, 0) << row.case_name;

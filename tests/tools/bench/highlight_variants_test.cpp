@@ -7,7 +7,7 @@
 namespace luxrig {
 namespace {
 
-TEST(HighlightVariants, DecimatedToHalfASphereIsStillOneAndClosed) {
+TEST(HighlightVariants, ASphereDecimatedToHalfStaysAClosedSphere) {
   const Scene sphere = uv_sphere(1, 60);
   const auto whole = make_target_surface(sphere);
   const std::size_t wanted = whole->triangles.size() / 2;
@@ -28,7 +28,7 @@ TEST(HighlightVariants, DecimatedToHalfASphereIsStillOneAndClosed) {
   }
 }
 
-TEST(HighlightVariants, AreTheSameObjectInOtherWords) {
+TEST(HighlightVariants, DescribeTheSameObject) {
   const Scene object = torus(1, 0.4, 60, 30);
   const auto before = make_target_surface(object);
   for (const char* kind : highlight_variant_kinds()) {

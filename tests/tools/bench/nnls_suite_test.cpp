@@ -20,7 +20,7 @@ TEST(NnlsSuite, QuickRowsAreOptimal) {
             24 + 8 * problem.begin.size() + 8 * problem.row.size() + 8 * 300);
 }
 
-TEST(NnlsSuite, ProblemsAreTheSameEachTimeAndHaveTheSharesOfEntriesTheyName) {
+TEST(NnlsSuite, ProblemsAreReproducibleWithTheirStatedDensity) {
   for (const auto make : {random_nnls, lamps_nnls}) {
     const NnlsBenchProblem one = make(200, 500, 0.1), other = make(200, 500, 0.1);
     EXPECT_EQ(one.row, other.row);

@@ -38,7 +38,7 @@ INSTANTIATE_TEST_SUITE_P(All, PlacementCases, testing::ValuesIn(names_here()), [
   return name;
 });
 
-TEST_P(PlacementCases, AskForLightAtAFewHundredPointsInOneAir) {
+TEST_P(PlacementCases, AskForLightAtAFewHundredConnectedPoints) {
   for (const std::uint64_t seed : {1ULL, ~0ULL}) {
     const PlacementCase one = made(GetParam(), seed);
     EXPECT_EQ(one.name, GetParam());
@@ -84,7 +84,7 @@ double by_hand_lux(const PlacementCase& one, const RayScene& rays, const Receive
   return lux;
 }
 
-TEST(KnownLights, GoalIsTheirLightAndEveryReceiverGetsSome) {
+TEST(KnownLights, GoalIsTheirLightAndReachesEveryReceiver) {
   for (const auto& [name, lights] : {std::pair{"apartment-known", 10}, {"office-known", 9}})
     for (const std::uint64_t seed : {1, 2, 3}) {
       const PlacementCase one = made(name, seed);
@@ -95,7 +95,7 @@ TEST(KnownLights, GoalIsTheirLightAndEveryReceiverGetsSome) {
     }
 }
 
-TEST(KnownLights, GlobalGoalIsAboveTheDirectOneAndSaysItsError) {
+TEST(KnownLights, GlobalGoalExceedsTheDirectOneAndStatesItsError) {
   const PlacementCase direct = made("office-known", 1), global = made("office-known-global", 1);
   ASSERT_EQ(direct.receivers.size(), global.receivers.size());
   EXPECT_FALSE(direct.global);
@@ -110,7 +110,7 @@ TEST(KnownLights, GlobalGoalIsAboveTheDirectOneAndSaysItsError) {
   EXPECT_LT((global.goal_standard_error_lux.array() / global.goal_lux.col(0).array()).maxCoeff(), 0.12);
 }
 
-TEST(WantedLight, ColoursChangeFromRegionToRegionOnly) {
+TEST(WantedLight, ColoursChangeOnlyBetweenRegions) {
   for (const char* name : {"apartment-colour", "atrium-colour"}) {
     const PlacementCase one = made(name, 1);
     ASSERT_EQ(one.goal_lux.cols(), 3);
@@ -137,7 +137,7 @@ TEST(WantedLight, StatueAndPedestalAreBrighterThanFloors) {
   EXPECT_TRUE(made("museum-near-surfaces", 1).near_surfaces_m.has_value());
 }
 
-TEST(PlacementCase, WhatIsNotThereIsRefused) {
+TEST(PlacementCase, UnknownCasesAreRefused) {
   const auto refused = [](const std::string& name, const PlacementCaseOptions& options) {
     const auto one = make_placement_case(name, 1, options);
     return !one && one.error().cause == Cause::invalid && !one.error().detail.empty();

@@ -16,7 +16,7 @@ std::size_t lines_in(const std::string& text) {
   return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
 }
 
-TEST(Report, ASuiteGetsItsTableAtTheEnd) {
+TEST(Report, ANewSuiteGetsItsTableAtTheEnd) {
   EXPECT_EQ(
       with_rows("# Benchmarks\n", "transport", "luxrig bench transport", kRows, kFirst),
       "# Benchmarks\n\n### transport\n\n"
@@ -26,7 +26,7 @@ TEST(Report, ASuiteGetsItsTableAtTheEnd) {
       "| flat | gather | 0.03 | 0.5 | 0.02 | short | 1.0 (aaaa), 2026-01-02, 2 × A | `luxrig bench transport` |\n");
 }
 
-TEST(Report, ARowTakesThePlaceOfItsEarlierOneAndOthersStay) {
+TEST(Report, ARowReplacesItsEarlierOneAndOthersStay) {
   std::string text = with_rows("# Benchmarks\n", "transport", "c", kRows, kFirst);
   text = with_rows(text, "nnls", "n", {{"lamps", "cold", 1e-15, 0.1, {}, {}, {}}}, kFirst);
   const std::string before = text;
@@ -43,7 +43,7 @@ TEST(Report, ARowTakesThePlaceOfItsEarlierOneAndOthersStay) {
   EXPECT_EQ(with_rows(text, "transport", "d", again, kLater), text) << "measured the same again";
 }
 
-TEST(Report, ACaseWhoseNameBeginsLikeAnotherIsAnother) {
+TEST(Report, CasesWithACommonPrefixAreDistinct) {
   std::string text = with_rows("", "s", "c", {{"flat", "path", 1, 1, {}, {}, {}}}, kFirst);
   text =
       with_rows(text, "s", "c", {{"flat", "path-2", 2, 2, {}, {}, {}}, {"flat-2", "path", 3, 3, {}, {}, {}}}, kFirst);
@@ -59,7 +59,7 @@ TEST(Report, ABarInANameStaysInItsCell) {
   EXPECT_EQ(with_rows(text, "s", "c | d", rows, kFirst), text);
 }
 
-TEST(Report, SaysWhichProgramMachineAndDay) {
+TEST(Report, StatesProgramMachineAndDate) {
   const Provenance here = provenance();
   EXPECT_FALSE(here.version.empty());
   EXPECT_NE(here.machine.find("×"), std::string::npos);

@@ -37,7 +37,7 @@ TEST(AnalyticSuite, DirectLightMeetsItsTargetsInPointFluxAndAreaRows) {
     }
 }
 
-TEST(AnalyticCase, ErrorsAreOverTheReceiversAndOfThePartAskedFor) {
+TEST(AnalyticCase, ErrorsCoverTheReceiversAndTheRequestedPart) {
   AnalyticCase one;
   one.exact_lx = {100, 10, 0.01};
   TransportMatrix matrix;
@@ -70,7 +70,7 @@ TEST(AnalyticCase, FewerReceiversAreSpreadOverAllAndKeepTheirExactLux) {
   EXPECT_EQ(with_receivers(one, 99).exact_lx, one.exact_lx);
 }
 
-TEST(TransportCase, ErrorIsRelativeToTheLuxOrOnePerCentOfItsMean) {
+TEST(TransportCase, ErrorIsRelativeToTheLuxOrToOnePercentOfItsMean) {
   Eigen::VectorXd lux(2), reference(2);
   reference << 199, 1;
   lux << 199, 2;
@@ -82,7 +82,7 @@ TEST(TransportCase, ErrorIsRelativeToTheLuxOrOnePerCentOfItsMean) {
   EXPECT_NEAR(error_of(lux, reference).bias, (1.0 - 0.05) / 2, 1e-12);
 }
 
-TEST(TransportCase, HashTellsRoomsApartByGeometryMaterialLampAndReceiver) {
+TEST(TransportCase, HashDistinguishesGeometryMaterialLampAndReceiver) {
   const LitRoom room = make_box_room();
   EXPECT_EQ(hash_of(room), hash_of(make_box_room()));
   std::set<std::uint64_t> hashes = {hash_of(room), hash_of(make_box_room(2))};

@@ -22,7 +22,7 @@ const BenchRow* row_named(const std::vector<BenchRow>& rows, const std::string& 
   return nullptr;
 }
 
-TEST(TransportRows, SkipsOfACandidateMatrixMoveDirectLightByNothing) {
+TEST(TransportRows, SkipsOfACandidateMatrixLeaveDirectLightUnchanged) {
   const auto rows = rows_of(add_candidate_skip_rows, "skip-box-direct");
   ASSERT_EQ(rows.size(), 5u);  // other-air, behind, blockers, reach, all
   for (const BenchRow& row : rows) EXPECT_EQ(row.met(), std::optional(true)) << row.case_name << ' ' << row.error;
@@ -30,7 +30,7 @@ TEST(TransportRows, SkipsOfACandidateMatrixMoveDirectLightByNothing) {
   EXPECT_NE(row_named(rows, "skip-box-direct-other-air")->further.back().second.find("skips "), std::string::npos);
 }
 
-TEST(TransportRows, SkipsOfEvaluatorsMoveLightWithinItsError) {
+TEST(TransportRows, SkipsOfEvaluatorsShiftLightOnlyWithinItsError) {
   const auto rows = rows_of(add_evaluator_skip_rows, "skip-box");
   ASSERT_EQ(rows.size(), 3u);
   for (const BenchRow& row : rows) EXPECT_EQ(row.met(), std::optional(true)) << row.case_name << ' ' << row.error;
@@ -51,7 +51,7 @@ TEST(TransportRows, AChangedLampHasARowPerMethodAndTheirComparison) {
   EXPECT_NEAR(*compared->target_seconds, row_named(rows, "changed-lamp-box-1", "path")->seconds / 5, 1e-12);
 }
 
-TEST(TransportRows, GrowthIsToldWithCandidatesAndPoints) {
+TEST(TransportRows, ReportGrowthWithCandidatesAndPoints) {
   const auto rows = rows_of(add_growth_rows, "matrix-growth-direct");
   for (const char* name :
        {"matrix-growth-direct-300x1000", "matrix-growth-direct-150x10000", "matrix-growth-direct-300x10000"}) {
@@ -62,14 +62,14 @@ TEST(TransportRows, GrowthIsToldWithCandidatesAndPoints) {
   ASSERT_TRUE(row_named(rows, "matrix-growth-direct-with-points"));
 }
 
-TEST(TransportRows, AMillionIsAskedForByNameOnly) {
+TEST(TransportRows, AMillionCandidatesRunOnlyWhenNamed) {
   EXPECT_TRUE(rows_of(add_growth_rows, "matrix-million").size() == 1);
   EXPECT_TRUE(rows_of(add_growth_rows, "moved").empty());
   for (const BenchRow& row : rows_of(add_growth_rows, "matrix"))
     EXPECT_EQ(row.case_name.find("million"), std::string::npos);
 }
 
-TEST(TransportRows, AMovedObjectIsAskedAboutOnlyWhereItMatters) {
+TEST(TransportRows, AMovedObjectCastsRaysOnlyWhereItMatters) {
   const auto rows = rows_of(add_moved_rows, "moved-object-direct");
   ASSERT_EQ(rows.size(), 1u);
   EXPECT_EQ(rows[0].met(), std::optional(true)) << rows[0].error;

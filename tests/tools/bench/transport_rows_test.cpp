@@ -7,7 +7,7 @@
 namespace luxrig {
 namespace {
 
-TEST(MedianOf, IsTheMiddleAndNothingOfNothing) {
+TEST(MedianOf, IsTheMiddleValueAndHandlesNoValues) {
   EXPECT_EQ(median_of(std::vector<double>{3, 1, 2}), 2);
   EXPECT_EQ(median_of(std::vector<double>{4, 1}), 4);
   EXPECT_TRUE(std::isnan(median_of(std::vector<double>{})));
@@ -16,7 +16,7 @@ TEST(MedianOf, IsTheMiddleAndNothingOfNothing) {
   EXPECT_EQ(median_of(calls).cpu, 20);
 }
 
-TEST(Timed, CountsProcessorTimeOfWorkAndNotOfWaiting) {
+TEST(Timed, CountsProcessorTimeOfWorkNotOfWaiting) {
   volatile double sum = 0;
   const CallSeconds took = timed([&] {
     for (int i = 0; i < 20'000'000; ++i) sum = sum + 1;
@@ -41,7 +41,7 @@ CandidateColumns columns_of(const std::vector<std::vector<float>>& lux, float er
   return columns;
 }
 
-TEST(EntryMoves, AreOfEveryEntryThatEitherHas) {
+TEST(EntryMoves, CoverEveryEntryOfEither) {
   const auto a = columns_of({{100, 10, 0}, {0, 0, 4}}, 0.3f), b = columns_of({{101, 10, 0}, {0, 0, 0}}, 0.4f);
   const EntryMoves moves = moves_between(a, b, 3, 0);
   EXPECT_NEAR(moves.largest, 4.0 / 101, 1e-6);
@@ -55,7 +55,7 @@ TEST(EntryMoves, AreOfEveryEntryThatEitherHas) {
   EXPECT_EQ(moves_between({}, {}, 3, 0).sum, 0);
 }
 
-TEST(ThisManyReceivers, AreSomeOfTheRoomsOrAllAndOthersThatHangInTheSameAir) {
+TEST(ThisManyReceivers, AreASubsetOrAllOfTheRoomsAndMoreInItsAir) {
   const TransportCase one(make_box_room());
   const std::size_t all = one.room.receivers.size();
   const auto some = this_many_receivers(one, all / 4);

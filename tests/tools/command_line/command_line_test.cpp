@@ -79,14 +79,14 @@ class CommandLine : public ::testing::Test {
   bool fill = false;
 };
 
-TEST_F(CommandLine, TakesWhatIsRight) {
+TEST_F(CommandLine, AcceptsValidArguments) {
   EXPECT_EQ(parse({"draw", "x", "--shape", "round", "-s", "3", "--fill"}), -1) << output;
   EXPECT_EQ(shape, Shape::round);
   EXPECT_EQ(size, 3);
   EXPECT_TRUE(fill);
 }
 
-TEST_F(CommandLine, RefusesWhatIsMistypedWithTheNearest) {
+TEST_F(CommandLine, RefusesTyposAndSuggestsTheNearestWord) {
   const std::vector<std::pair<std::vector<std::string>, std::string>> cases = {
       {{"darw", "x"}, "tool: there is no command \"darw\": did you mean \"draw\"?\n"},
       {{"draw", "x", "--shpae", "round"}, "tool draw: there is no option \"--shpae\": did you mean \"--shape\"?\n"},
@@ -103,7 +103,7 @@ TEST_F(CommandLine, RefusesWhatIsMistypedWithTheNearest) {
   EXPECT_NE(output.find("there is no \"sqare\": did you mean \"square\"?"), std::string::npos) << output;
 }
 
-TEST_F(CommandLine, RefusesAWordThatItNoLongerTakesWithTheReason) {
+TEST_F(CommandLine, RefusesARetiredWordWithTheReason) {
   EXPECT_EQ(parse({"draw", "x", "--shape", "oval"}), 2);
   EXPECT_EQ(output,
             "tool draw: --shape: \"oval\" is refused, as it was neither: use round: `tool draw --help` tells all\n");
@@ -112,7 +112,7 @@ TEST_F(CommandLine, RefusesAWordThatItNoLongerTakesWithTheReason) {
   EXPECT_EQ(texts({"draw", "--shape", ""}), "round square");
 }
 
-TEST_F(CommandLine, HelpIsInWords) {
+TEST_F(CommandLine, HelpListsWordsAndDefaults) {
   EXPECT_EQ(parse({"draw", "--help"}), 0);
   for (const char* text : {"what it looks like; round or square; default square", "-s, --size N",
                            "how large; 0.5 to 8; default 2", "--fill                    inside, too\n"})
@@ -159,7 +159,7 @@ TEST_F(CommandLine, CommandsOptionsAndWordsAreOffered) {
   EXPECT_EQ(texts({"lits", ""}), "draw copy list") << "as long as the command is not known";
 }
 
-TEST_F(CommandLine, FilesAreOfferedWhereTheyCanStandAndNowhereElse) {
+TEST_F(CommandLine, FilesAreOfferedOnlyWhereTheyAreAllowed) {
   using Places = Offer::Places;
   EXPECT_EQ(offer({"draw", ""}).places, Places::files);
   EXPECT_EQ(offer({"draw", "--fill", "-s", "3", "--shape=round", ""}).places, Places::files);
@@ -181,7 +181,7 @@ std::string told_by(const std::string& command) {
   return status == 0 ? told : told + "failed\n";
 }
 
-TEST_F(CommandLine, BashTakesWhatFitsOfWhatTheProgramOffers) {
+TEST_F(CommandLine, BashFiltersTheOfferedWords) {
   const auto offered = [this](const std::vector<std::string>& words) {
     const std::string script_file = ::testing::TempDir() + "luxrig-completion-" + std::to_string(::getpid());
     std::ofstream script(script_file);
@@ -208,7 +208,7 @@ TEST_F(CommandLine, BashTakesWhatFitsOfWhatTheProgramOffers) {
   EXPECT_EQ(offered({"draw", ""}), "\n") << "bash offers files by itself";
 }
 
-TEST_F(CommandLine, EachShellAcceptsItsScript) {
+TEST_F(CommandLine, EveryShellAcceptsItsScript) {
   for (const auto& [name, shell] : shells()) {
     const std::string script_file =
         ::testing::TempDir() + "luxrig-completion-" + std::to_string(::getpid()) + "." + name;

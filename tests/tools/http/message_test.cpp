@@ -21,7 +21,7 @@ TEST(HttpMessage, ParametersAreDecoded) {
   EXPECT_EQ(request.parameter("none"), std::nullopt);
 }
 
-TEST(HttpMessage, StaticFilesAreThoseOfTheFolderOnly) {
+TEST(HttpMessage, StaticFilesComeOnlyFromTheirFolder) {
   std::string name = (std::filesystem::temp_directory_path() / "luxrig-static-XXXXXX").string();
   const std::filesystem::path folder = ::mkdtemp(name.data());
   std::filesystem::create_directories(folder / "web" / "assets");
@@ -41,7 +41,7 @@ TEST(HttpMessage, StaticFilesAreThoseOfTheFolderOnly) {
   std::filesystem::remove_all(folder);
 }
 
-TEST(JsonBody, IsReadToADepth) {
+TEST(JsonBody, IsReadUpToALimitedDepth) {
   EXPECT_EQ(json_body(R"({"a":[1,{"b":"]]]]"}]})")["a"][0], 1);
   EXPECT_TRUE(json_body(std::string(16, '[') + std::string(16, ']')).is_array());
   EXPECT_TRUE(json_body(std::string(17, '[') + std::string(17, ']')).is_discarded());

@@ -133,7 +133,7 @@ TEST_F(ServerTest, KeepsAConnectionForTheNextRequest) {
   EXPECT_TRUE(wire.ended());
 }
 
-TEST_F(ServerTest, WhatFollowsARefusedRequestIsNotARequest) {
+TEST_F(ServerTest, IgnoresDataAfterARefusedRequest) {
   const std::string smuggled = post("/changed", "{}");
   for (const std::string& foreign :
        {std::string("Origin: http://evil.example\r\n"), std::string("Origin: null\r\n"),
@@ -174,7 +174,7 @@ TEST_F(ServerTest, WhatFollowsARefusedRequestIsNotARequest) {
   EXPECT_EQ(changed, 1);
 }
 
-TEST_F(ServerTest, HostHasToBeLoopback) {
+TEST_F(ServerTest, HostMustBeLoopback) {
   for (const char* host : {"localhost", "127.0.0.1", "127.0.0.1:81", "[::1]:9620", "LOCALHOST:1"})
     EXPECT_EQ(status(std::string("GET /looked HTTP/1.1\r\nHost: ") + host + "\r\n\r\n"), 200) << host;
   looked = 0;
@@ -215,7 +215,7 @@ TEST_F(ServerTest, HeadersAndBodiesHaveLimits) {
   EXPECT_EQ(changed, 1);
 }
 
-TEST_F(ServerTest, ALargeBodyIsTakenInWholeAndOnlyTwoAtOnce) {
+TEST_F(ServerTest, AcceptsLargeBodiesWholeButOnlyTwoAtOnce) {
   const std::string body(1 << 20, 'x');
   EXPECT_EQ(status(post("/large", body)), 200);
   EXPECT_EQ(large_bytes, body.size());
@@ -234,7 +234,7 @@ TEST_F(ServerTest, ALargeBodyIsTakenInWholeAndOnlyTwoAtOnce) {
   EXPECT_EQ(again, 200) << "whoever went makes room";
 }
 
-TEST_F(ServerTest, ExpectsToBeToldToContinue) {
+TEST_F(ServerTest, SupportsExpectContinue) {
   Wire wire(port);
   const std::string request = post("/changed", "{}", std::string(kJsonHead) + "Expect: 100-continue\r\n");
   wire.send(request.substr(0, request.size() - 2));
@@ -243,7 +243,7 @@ TEST_F(ServerTest, ExpectsToBeToldToContinue) {
   EXPECT_EQ(status_of(wire.receive(kAnswered, "\r\n\r\n")), 200);
 }
 
-TEST_F(ServerTest, TwoHundredThatDribbleLockNobodyOut) {
+TEST_F(ServerTest, TwoHundredSlowClientsLockNoOtherOut) {
   std::vector<Wire> dribbling;
   for (int i = 0; i < 200; ++i) dribbling.emplace_back(port).send("GET /loo");
   for (int round = 0; round < 5; ++round) {
@@ -255,7 +255,7 @@ TEST_F(ServerTest, TwoHundredThatDribbleLockNobodyOut) {
   EXPECT_EQ(urgent, 5);
 }
 
-TEST_F(ServerTest, UrgentWaitsForNobody) {
+TEST_F(ServerTest, UrgentRequestsDoNotWait) {
   std::vector<Wire> waiting;
   for (int i = 0; i < 20; ++i) waiting.emplace_back(port).send("GET /slow HTTP/1.1\r\nHost: localhost\r\n\r\n");
   const auto end = SteadyClock::now() + kAnswered;
@@ -288,7 +288,7 @@ TEST_F(ServerTest, OnePeerDoesNotGetAllEventStreams) {
   EXPECT_EQ(again, 200) << "whoever went makes room";
 }
 
-TEST_F(ServerTest, StopsWhateverClientsDo) {
+TEST_F(ServerTest, StopsRegardlessOfHangingClients) {
   std::vector<Wire> hung;
   for (int i = 0; i < 20; ++i) hung.emplace_back(port).send("GET /loo");
   for (int i = 0; i < 20; ++i)
@@ -302,12 +302,12 @@ TEST_F(ServerTest, StopsWhateverClientsDo) {
   server->stop();
 }
 
-TEST_F(ServerTest, AHandlerThatThrowsIsAnAnswer) {
+TEST_F(ServerTest, AThrowingHandlerIsAnsweredWith500) {
   EXPECT_EQ(status(post("/throws", "{}")), 500);
   EXPECT_EQ(status(kOk + "\r\n"), 200);
 }
 
-TEST_F(ServerTest, SlowRequestsEnd) {
+TEST_F(ServerTest, SlowRequestsTimeOut) {
   Wire wire(port);
   wire.send("GET /loo");
   const auto start = SteadyClock::now();
@@ -321,7 +321,7 @@ TEST_F(ServerTest, SlowRequestsEnd) {
   EXPECT_GT(SteadyClock::now() - start, 4s);
 }
 
-TEST_F(ServerTest, ItsOwnClientIsUnderstood) {
+TEST_F(ServerTest, ItsOwnClientWorks) {
   const auto looked_at = http_get({"127.0.0.1", port}, "/looked");
   ASSERT_TRUE(looked_at);
   EXPECT_EQ(looked_at->body, "seen");
@@ -335,7 +335,7 @@ TEST_F(ServerTest, ItsOwnClientIsUnderstood) {
   EXPECT_FALSE(http_get({"127.0.0.1", port}, "/looked"));
 }
 
-TEST(HttpServer, AUnixSocketNeedsNoCredentialAndThePortDoes) {
+TEST(HttpServer, RequiresACredentialOnItsPortButNotOnItsUnixSocket) {
   const std::string file = "/tmp/luxrig-http-test-" + std::to_string(::getpid()) + ".socket";
   HttpServerOptions options;
   options.routes = {{"GET", "/who", [](const HttpRequest& request) {

@@ -70,7 +70,7 @@ TEST(Figures, ABallsCurvatureHasOneColour) {
   EXPECT_TRUE(is_paper(figure->picture.rgb.front()));
 }
 
-TEST(Figures, DotsAreOnlyInTheRecess) {
+TEST(Figures, DotsLieOnlyInTheRecess) {
   const ShownObject object = shown_hill(Vec3::UnitZ());
   RenderOptions options = small_picture();
   options.eye_world_m = Vec3(0, 0, 3);
@@ -107,7 +107,7 @@ TEST(Figures, FeaturesAreColouredAndCounted) {
             std::string::npos);
 }
 
-TEST(Figures, TheHistogramsBestDirectionIsMarkedWhereItIs) {
+TEST(Figures, TheHistogramMarksItsBestDirection) {
   const ShownObject object = shown_hill(Vec3(0.2, -1, 0.4).normalized());
   ShownRig rig;
   RenderOptions options;
@@ -137,7 +137,7 @@ TEST(Figures, TheHistogramsBestDirectionIsMarkedWhereItIs) {
   EXPECT_GT(below, 10000);
 }
 
-TEST(Figures, TheHeaviestPlaceOfTheDomainIsMarkedWhereItsSpotIs) {
+TEST(Figures, TheDomainMarksItsHeaviestPlace) {
   const ShownObject object = shown_hill(Vec3(0.2, -1, 0.4).normalized());
   ShownRig rig;
   rig.scene = object.target;
@@ -162,7 +162,7 @@ SceneObject named_object(const std::string& name, bool mesh) {
   return object;
 }
 
-TEST(Figures, TheObjectIsTheOnlyMeshOrTheOneThatIsNamed) {
+TEST(Figures, TheObjectIsTheOnlyMeshOrTheNamedOne) {
   Rig rig;
   const auto none = object_to_show(rig, {});
   ASSERT_FALSE(none.has_value());

@@ -7,7 +7,7 @@ namespace {
 
 using nlohmann::json;
 
-TEST(MonitorPicture, ShowsSlotsByAddressAndLeavesOutDarkRows) {
+TEST(MonitorPicture, ShowsSlotsByAddressAndOmitsDarkRows) {
   std::vector<int> slots(512, 0);
   slots[0] = 255, slots[40] = 7;
   const json universes = {{{"bus", "dmx"}, {"universe", 3}, {"silent", false}, {"slots", slots}}};
@@ -30,7 +30,7 @@ TEST(MonitorPicture, ShowsSlotsByAddressAndLeavesOutDarkRows) {
   EXPECT_NE(text.find("faulted"), std::string::npos);
 }
 
-TEST(MonitorPicture, SaysWhyAHeadIsDarkAndWhatItWaitsFor) {
+TEST(MonitorPicture, ShowsWhyAHeadIsDarkAndWhatItWaitsFor) {
   const json status = json::parse(R"({"rig":"hall","fixtures":[
     {"name":"spot","moves":true,"parked":true,"waits_for":"the next plan"},
     {"name":"wash","moves":true,"kept_dark":true,"waits_for":"its beam to be clear of keep-out zone \"stage\""},
@@ -46,7 +46,7 @@ TEST(MonitorPicture, SaysWhyAHeadIsDarkAndWhatItWaitsFor) {
   EXPECT_EQ(text.find("dark", lit), std::string::npos) << text;
 }
 
-TEST(MonitorPicture, TakesWhateverAnswers) {
+TEST(MonitorPicture, ToleratesInvalidStatus) {
   for (const char* status :
        {"null", "[]", "7", "{}", R"({"alarms":7,"devices":{},"fixtures":[[],null],"luxmeters":[1]})",
         R"({"fixtures":[{"name":5,"drive":"x"}]})"}) {

@@ -37,7 +37,7 @@ Picture square_before(double backdrop_cd_m2, double share, double dim_cd_m2, dou
   return picture;
 }
 
-TEST(Exposure, OfASmallThingBeforeADarkBackdropKeepsItsModelling) {
+TEST(Exposure, OfASmallObjectOnADarkBackdropKeepsItsHighlights) {
   for (const double share : {0.005, 0.04, 0.3}) {
     const double white_cd_m2 = metered_white_cd_m2(square_before(0.05, share, 40, 100));
     EXPECT_GE(white_cd_m2, 2.5 * 100) << share;
@@ -45,7 +45,7 @@ TEST(Exposure, OfASmallThingBeforeADarkBackdropKeepsItsModelling) {
   }
 }
 
-TEST(Exposure, OfAnEvenRoomIsAsBefore) {
+TEST(Exposure, OfAnEvenRoomUsesItsMeanLuminance) {
   EXPECT_NEAR(metered_white_cd_m2(square_before(20, 0.3, 18, 22)), 20 * 100 / 3.0, 20);
   EXPECT_GT(metered_white_cd_m2(square_before(0, 1, 0, 0)), 0) << "nothing shines";
 }
@@ -73,7 +73,7 @@ Emitter lamp_of(double lumens, const Vec3& rgb) {
   return lamp;
 }
 
-TEST(WhiteOfLamps, IsTheBlackBodyNearestToTheLightOfThoseThatAreOn) {
+TEST(WhiteOfLamps, IsTheBlackBodyNearestToTheLitLamps) {
   const std::vector<Emitter> lamps = {lamp_of(1000, rgb_of_cct(2700)), lamp_of(1000, rgb_of_cct(6000))};
   EXPECT_NEAR(*white_of_lamps(lamps, std::vector{1.0, 0.0}).cct_k, 2700, 20);
   EXPECT_NEAR(*white_of_lamps(lamps, std::vector{0.0, 0.5}).cct_k, 6000, 50);
@@ -112,7 +112,7 @@ Vec3 middle_of_jpeg(const std::filesystem::path& file) {
   return colour;
 }
 
-TEST(Photograph, IsWrittenAsJpegInTheColourBalanceAskedFor) {
+TEST(Photograph, IsWrittenAsJpegWithTheRequestedWhiteBalance) {
   const auto file = std::filesystem::path(testing::TempDir()) / "luxrig_photograph.JPG";
   const Vec3 warm = rgb_of_cct(2700);
   const Picture picture = square_before(10, 1, 10, 10, warm);
@@ -180,7 +180,7 @@ universe = 1
 address = 1
 )";
 
-TEST(AutomaticCamera, OfARigWithoutPointsStandsInTheRoomAndSeesWhatItsLampsLight) {
+TEST(AutomaticCamera, OfARigWithoutPointsStandsInTheRoomFacingItsLight) {
   const LitRoom room = room_with(kSpotOnTheWall);
   const RayScene rays(room.scene);
   const Camera camera = automatic_camera(rays, room.rig, {}, 320, 200, rad_from_deg(60));
@@ -192,7 +192,7 @@ TEST(AutomaticCamera, OfARigWithoutPointsStandsInTheRoomAndSeesWhatItsLampsLight
   EXPECT_GT((camera.eye_world_m - lit_m).norm(), 1.5) << "not a view of a wall's grain";
 }
 
-TEST(AutomaticCamera, IgnoresGroundThatGoesOnForAKilometre) {
+TEST(AutomaticCamera, IgnoresAKilometreOfGround) {
   const LitRoom room = room_with(std::string(kSpotOnTheWall) +
                                  "[[scene.object]]\nname = \"ground\"\nbox_m = [1000, 1000, 0.1]\n"
                                  "position_m = [0, 0, -0.3]\n");
@@ -222,7 +222,7 @@ std::string dark_words(const LitRoom& room, double level, const LitRoom* seen = 
   return why_dark(*picture, rays, room.rig, emitters, levels, "in p.json");
 }
 
-TEST(DarkPictures, SayWhy) {
+TEST(DarkPictures, AreExplained) {
   EXPECT_EQ(dark_words(room_with(kSpotOnTheWall), 1), "");
   EXPECT_EQ(dark_words(room_with(kSpotOnTheWall), 0),
             "the picture is dark: no lamp gives light, all 1 are at level 0 in p.json");

@@ -19,7 +19,7 @@ rdm::DeviceProfile head_profile() {
   return profile;
 }
 
-TEST(RdmStubs, NameTheSlotsThatTheDeviceDescribes) {
+TEST(RdmStubs, NameTheDescribedSlots) {
   EXPECT_EQ(slot_names(head_profile()), (std::vector<std::string>{"pan", "pan-fine", "tilt", "tilt-fine", "dimmer",
                                                                   "dimmer-fine", "dimmer-ultra", "unused"}));
   rdm::DeviceProfile odd = head_profile();
@@ -27,7 +27,7 @@ TEST(RdmStubs, NameTheSlotsThatTheDeviceDescribes) {
   EXPECT_EQ(slot_names(odd), std::vector<std::string>(8, "unused"));
 }
 
-TEST(RdmStubs, AreFixturesOfARigFile) {
+TEST(RdmStubs, AreValidRigFileFixtures) {
   rdm::DeviceProfile plain = head_profile();
   plain.slots.clear();
   rdm::DeviceProfile rack = head_profile();

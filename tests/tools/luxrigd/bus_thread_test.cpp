@@ -76,7 +76,7 @@ bool eventually(const std::function<bool()>& done) {
   return true;
 }
 
-TEST(BusThread, SendsNothingBeforeSomebodyHasSaidWhatTheLightShallBe) {
+TEST(BusThread, SendsNothingBeforeTheFirstProgram) {
   const Rig rig = one_fixture_each(1);
   ProgramMailbox programs;
   RecordingDriver::Record record;
@@ -90,7 +90,7 @@ TEST(BusThread, SendsNothingBeforeSomebodyHasSaidWhatTheLightShallBe) {
   EXPECT_TRUE(record.goodbye);
 }
 
-TEST(BusThread, FollowsEveryChangeWhileAnotherThreadChangesItWithoutPause) {
+TEST(BusThread, FollowsChangesThatAnotherThreadMakesWithoutPause) {
   const Rig rig = one_fixture_each(1);
   ProgramMailbox programs;
   RecordingDriver::Record record;
@@ -130,7 +130,7 @@ TEST(CycleStatistics, QuantilesCountDeviationsInBothDirections) {
 }
 
 // The figures used to end at 20 ms, however bad the worst was.
-TEST(CycleStatistics, TellsToOnePercentHowBadTheWorstAre) {
+TEST(CycleStatistics, GivesTheWorstDeviationsToOnePercent) {
   for (const std::int64_t late_us : std::initializer_list<std::int64_t>{15, 400, 2559, 2560, 2570, 19'990, 20'010, 130'000, 5'000'000, 3'600'000'000}) {
     CycleStatistics statistics(10ms);
     for (int i = 0; i < 90; ++i) statistics.record(10ms);
@@ -141,7 +141,7 @@ TEST(CycleStatistics, TellsToOnePercentHowBadTheWorstAre) {
   }
 }
 
-TEST(BusThread, ABlackoutIsOutAtOnceAndToldOnlyWhenItIs) {
+TEST(BusThread, ABlackoutGoesOutAtOnceAndIsReportedOnlyThen) {
   const Rig rig = one_fixture_each(1);
   ProgramMailbox programs;
   programs.put(steady(rig, 0.5, 1));

@@ -16,7 +16,7 @@ using namespace std::chrono_literals;
 
 std::string of_this_test(const std::string& what) { return what + " of test " + std::to_string(::getpid()); }
 
-TEST(Claims, AreHadByOneAndSayByWhom) {
+TEST(Claims, HaveASingleHolderAndNameIt) {
   const std::string what = of_this_test("folder");
   auto first = std::make_unique<Claims>();
   ASSERT_TRUE(first->take(what));
@@ -31,7 +31,7 @@ TEST(Claims, AreHadByOneAndSayByWhom) {
   EXPECT_TRUE(second.take(what));
 }
 
-TEST(Claims, OfNamesThatAreTooLongAreStillOfEachItsOwn) {
+TEST(Claims, OfOverlongNamesStayDistinct) {
   const std::string longest(300, 'x');
   Claims one, two;
   ASSERT_TRUE(one.take(of_this_test(longest)));
@@ -39,7 +39,7 @@ TEST(Claims, OfNamesThatAreTooLongAreStillOfEachItsOwn) {
   EXPECT_TRUE(two.take(of_this_test(longest + "y")));
 }
 
-TEST(Claims, EndWithTheLastProcessThatHoldsThem) {
+TEST(Claims, EndWithTheirLastHoldingProcess) {
   const std::string what = of_this_test("lamp");
   int go[2];
   ASSERT_EQ(::pipe(go), 0);
@@ -62,7 +62,7 @@ TEST(Claims, EndWithTheLastProcessThatHoldsThem) {
   ::close(go[0]);
 }
 
-TEST(Claims, OfARigAreWhatItSendsTo) {
+TEST(Claims, OfARigAreItsOutputs) {
   const auto rig = load_rig(test::source_folder() / "tests/rigs/without-data");
   ASSERT_TRUE(rig);
   EXPECT_EQ(outputs_of(*rig, {}),

@@ -7,7 +7,7 @@
 namespace luxrig {
 namespace {
 
-TEST(Lateness, SaysNothingOfAThreadThatWakesInTime) {
+TEST(Lateness, IgnoresAThreadThatWakesInTime) {
   Lateness lateness;
   for (int i = 0; i < 100; ++i) lateness.record(at(i), at(i + 0.1));
   EXPECT_FALSE(lateness.spell(at(100)));

@@ -48,7 +48,7 @@ class RoomInLooks : public ::testing::Test {
   std::atomic<bool> computed_{false};
 };
 
-TEST_F(RoomInLooks, AKnownLookIsNotComputed) {
+TEST_F(RoomInLooks, AKnownLookIsNotComputedAgain) {
   LightOfLooks looks(options_);
   const LightModel first = model(looks, hung_);
   EXPECT_TRUE(computed_);
@@ -65,7 +65,7 @@ TEST_F(RoomInLooks, LightComputedElsewhereIsKnown) {
   EXPECT_FALSE(computed_);
 }
 
-TEST_F(RoomInLooks, AHeadThatTurnsBackCostsNothingAndTheRestIsKept) {
+TEST_F(RoomInLooks, AHeadThatTurnsBackCostsNothing) {
   LightOfLooks looks(options_);
   const LightModel before = model(looks, hung_), after = model(looks, turned(0.3));
   EXPECT_TRUE(computed_);
@@ -79,7 +79,7 @@ TEST_F(RoomInLooks, AHeadThatTurnsBackCostsNothingAndTheRestIsKept) {
   }
 }
 
-TEST_F(RoomInLooks, TheLastLookIsSavedAlsoOneThatWasKnown) {
+TEST_F(RoomInLooks, TheLastLookIsSavedEvenIfAlreadyKnown) {
   const Folder folder;
   LightOfLooks looks(options_, folder / "state");
   EXPECT_FALSE(looks.read_saved(*session_));
@@ -104,7 +104,7 @@ TEST_F(RoomInLooks, TheLastLookIsSavedAlsoOneThatWasKnown) {
   EXPECT_FALSE(LightOfLooks(other, folder / "state").read_saved(*session_)) << "it was wanted less exact";
 }
 
-TEST_F(RoomInLooks, AsksOfSeveralThreadsGetTheLightOfTheirOwnLook) {
+TEST_F(RoomInLooks, ConcurrentRequestsGetTheLightOfTheirOwnLook) {
   options_.watch.tell = nullptr;
   LightOfLooks looks(options_);
   (void)model(looks, hung_);

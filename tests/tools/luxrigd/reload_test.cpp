@@ -61,7 +61,7 @@ class RoomThatChanges : public ::testing::Test {
   std::shared_ptr<Session> before_;
 };
 
-TEST_F(RoomThatChanges, EachPartIsToldFromTheOthersAndACommentIsNoChange) {
+TEST_F(RoomThatChanges, DistinguishesChangedPartsAndIgnoresComments) {
   EXPECT_EQ(differs("# The smallest rig", "# A small rig"), "");
   EXPECT_EQ(differs("goal_lx = 150", "goal_lx = 151"), "goals");
   EXPECT_EQ(differs("weight = 0.5", "weight = 0.6"), "goals");
@@ -78,7 +78,7 @@ TEST_F(RoomThatChanges, EachPartIsToldFromTheOthersAndACommentIsNoChange) {
   EXPECT_EQ(differs("aim = \"plinth-top\"    ", "aim = \"floor\"    "), light) << "this one hangs so";
 }
 
-TEST_F(RoomThatChanges, WhatReachesTheOutputsNeedsARestartAndTheRestDoesNot) {
+TEST_F(RoomThatChanges, OnlyOutputChangesNeedARestart) {
   for (const auto& [from, to] :
        {std::pair{"goal_lx = 150", "goal_lx = 20"}, std::pair{"max_lx = 200", "max_lx = 50"},
         std::pair{"lumens = 900", "lumens = 1900"}, std::pair{"max_level = 0.9", "max_level = 0.8"},
@@ -102,7 +102,7 @@ TEST_F(RoomThatChanges, WhatReachesTheOutputsNeedsARestartAndTheRestDoesNot) {
   }
 }
 
-TEST_F(RoomThatChanges, AFileIsReportedWhileItsContentDiffersNotWhenItIsOnlyWrittenAgain) {
+TEST_F(RoomThatChanges, AFileIsReportedOnlyWhileItsContentDiffers) {
   const auto files = files_of(before_->rig);
   EXPECT_EQ(files.size(), 2u) << "the rig file and its mesh";
   const RigFileWatch watch(files, std::chrono::milliseconds(20));
@@ -129,7 +129,7 @@ TEST_F(RoomThatChanges, AFileIsReportedWhileItsContentDiffersNotWhenItIsOnlyWrit
   EXPECT_TRUE(reported(1));
 }
 
-TEST_F(RoomThatChanges, NamesMayHaveWildcardsAndOneThatIsNobodysIsRefused) {
+TEST_F(RoomThatChanges, NamesMayHaveWildcardsAndUnknownOnesAreRefused) {
   const Rig& rig = before_->rig;
   EXPECT_EQ(fixtures_called(rig, {"spot-1"})->size(), 1u);
   EXPECT_EQ(fixtures_called(rig, {"*-1"})->size(), 3u);

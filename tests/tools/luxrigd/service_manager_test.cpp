@@ -46,7 +46,7 @@ struct Said {
   }
 };
 
-TEST(ServiceManager, IsToldThatWeAreReadyAndAliveTwiceInItsTime) {
+TEST(ServiceManager, IsNotifiedOfReadinessAndTwicePerWatchdogPeriod) {
   const Said said;
   const NotifySocket systemd;
   ::setenv("NOTIFY_SOCKET", systemd.address().c_str(), 1);
@@ -66,7 +66,7 @@ TEST(ServiceManager, IsToldThatWeAreReadyAndAliveTwiceInItsTime) {
   EXPECT_EQ(systemd.heard(), "STOPPING=1");
 }
 
-TEST(ServiceManager, IsLeftAloneWhereNobodyAsked) {
+TEST(ServiceManager, IsNotNotifiedUnlessRequested) {
   const Said said;
   ::unsetenv("NOTIFY_SOCKET");
   ServiceManager none;

@@ -38,7 +38,7 @@ struct Pipe {
   int read = -1, write = -1;
 };
 
-TEST(Teller, TellsInOrder) {
+TEST(Teller, WritesInOrder) {
   const Pipe pipe;
   Teller teller(pipe.write);
   teller.tell("one\n");
@@ -47,7 +47,7 @@ TEST(Teller, TellsInOrder) {
   EXPECT_EQ(pipe.take(), "one\ntwo\n");
 }
 
-TEST(Teller, NobodyWhoReadsIsNobodyWhoIsWaitedFor) {
+TEST(Teller, DoesNotWaitForAReaderThatNeverReads) {
   ::signal(SIGPIPE, SIG_IGN);
   Pipe pipe;
   const Time begun = now();
@@ -62,7 +62,7 @@ TEST(Teller, NobodyWhoReadsIsNobodyWhoIsWaitedFor) {
   pipe.write = -1;  // not closed: the teller's thread may still be writing to it
 }
 
-TEST(Teller, AClosedPipeAndAFullDiskAreNoHarm) {
+TEST(Teller, SurvivesAClosedPipeAndAFullDisk) {
   ::signal(SIGPIPE, SIG_IGN);
   Pipe pipe;
   pipe.hang_up();

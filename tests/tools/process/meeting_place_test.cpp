@@ -27,7 +27,7 @@ int bound_to(const fs::path& file) {
 
 void age(const fs::path& file) { fs::last_write_time(file, fs::file_time_type::clock::now() - 1min); }
 
-TEST(MeetingPlace, WhatKilledDaemonsLeftIsForgottenAndNothingElse) {
+TEST(MeetingPlace, ForgetsOnlyTheRemainsOfKilledDaemons) {
   std::string name = "/tmp/luxrig-test-XXXXXX";
   const fs::path folder = ::mkdtemp(name.data());
   for (const int port : {1, 2, 3}) std::ofstream(token_file(folder, port)) << "token";

@@ -96,7 +96,7 @@ max_lx = 900
   return (folder / "rig.toml").string();
 }
 
-TEST(Aim, HeadsThatNothingHasLitAreComparedWithThemselvesAtFullLevelAndThatIsSaid) {
+TEST(Aim, UnlitHeadsAreComparedWithThemselvesAtFullLevelAndThatIsReported) {
   const Folder folder;
   const std::string rig = rig_with_a_well(folder, R"([[bus]]
 name = "dmx"
@@ -175,7 +175,7 @@ max_lights = 3
   EXPECT_LE(task["lights"].size(), 3u);
 }
 
-TEST(Highlight, SaysWhatAnObjectLacks) {
+TEST(Highlight, ReportsWhatAnObjectLacks) {
   const Folder folder;
   const std::string rig = rig_with_a_well(folder,
                                           "[[task]]\nname = \"detail\"\nkind = \"highlight\"\n"
@@ -246,7 +246,7 @@ contrast = "lux"
   EXPECT_NEAR(seen["points"][0]["lux"].get<double>(), plan["points"][0]["lux"].get<double>(), 1e-3);
 }
 
-TEST(Aim, AnAppliedPlanTurnsAHeadInTheDarkAndTheRigHoldsIt) {
+TEST(Aim, AnAppliedPlanTurnsAHeadAndAnImpossibleOneIsRefused) {
   LiveRig rig(source("tests/rigs/room"));
   ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.daemon().output();
   const auto file = rig.file("plan.json");

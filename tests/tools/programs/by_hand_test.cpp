@@ -46,7 +46,7 @@ double lux_of(const json& status, const std::string& point) {
   return -1;
 }
 
-TEST(ByHandOverTheWire, ALevelAndAGoalStayThroughCorrectionsAndARestartUntilTheyAreReleased) {
+TEST(ByHandOverTheWire, ALevelAndAGoalSurviveCorrectionsAndARestartUntilReleased) {
   LiveRig rig(source("tests/rigs/room"));
   ASSERT_TRUE(rig.wait_phase("holding", 90s)) << rig.daemon().output();
   const double before = level_of(rig, "bulb-1");
@@ -93,7 +93,7 @@ TEST(ByHandOverTheWire, ALevelAndAGoalStayThroughCorrectionsAndARestartUntilThey
   EXPECT_GT(before, 0);
 }
 
-TEST(ByHandOverTheWire, APlanWithLevelsByHandOrOtherGoalsIsNotUndoneByTheCorrection) {
+TEST(ByHandOverTheWire, TheCorrectionKeepsAPlansLevelsByHandAndGoals) {
   EditedRig edited;
   LiveRig rig(edited.path());
   ASSERT_TRUE(rig.wait_phase("holding", 90s)) << rig.daemon().output();
@@ -126,7 +126,7 @@ TEST(ByHandOverTheWire, APlanWithLevelsByHandOrOtherGoalsIsNotUndoneByTheCorrect
   EXPECT_TRUE(has_alarm(status, "rig.toml changed since the rig was read")) << status["alarms"];
 }
 
-TEST(ByHandOverTheWire, AReloadTakesNewGoalsWithoutDarkeningAndRefusesAnotherBusWhole) {
+TEST(ByHandOverTheWire, AReloadAppliesNewGoalsWithoutDarkeningAndRefusesAnotherBus) {
   EditedRig edited;
   LiveRig rig(edited.path());
   ASSERT_TRUE(rig.wait_phase("holding", 90s)) << rig.daemon().output();
@@ -164,7 +164,7 @@ TEST(ByHandOverTheWire, AReloadTakesNewGoalsWithoutDarkeningAndRefusesAnotherBus
   EXPECT_NEAR(lux_of(rig.status(), "plinth-top"), 110, 5) << "nothing of it was taken";
 }
 
-TEST(ByHandOverTheWire, ARigFileThatChangedWhileNobodyRanIsNoticedAtTheStart) {
+TEST(ByHandOverTheWire, ARigFileChangedWhileStoppedIsNoticedAtTheStart) {
   EditedRig edited;
   LiveRig rig(edited.path());
   ASSERT_TRUE(rig.wait_phase("holding", 90s)) << rig.daemon().output();

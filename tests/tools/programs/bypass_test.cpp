@@ -19,7 +19,7 @@ bool is_bypassed(const json& status, const std::string& name) {
 }
 
 // In this rig a lost luxmeter sends all lamps to the safe look.
-TEST(Bypass, OfADeadMeterBringsTheLightBackSaysTheRiskAndOutlivesAKill) {
+TEST(Bypass, OfADeadMeterRestoresTheLightReportsTheRiskAndSurvivesAKill) {
   LiveRig rig(source("tests/rigs/room"));
   ASSERT_TRUE(rig.wait_phase("holding", 90s)) << rig.daemon().output();
   rig.fault("meter-1", "dead", true);

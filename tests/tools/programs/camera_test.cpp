@@ -62,7 +62,7 @@ Ran camera(const std::vector<std::string>& words) {
   return luxrig::testing::run(all);
 }
 
-TEST(CameraCommands, CheckByLevelsTellsTheDimmerAndWhatItCannot) {
+TEST(CameraCommands, CheckByLevelsReportsTheDimmerAndItsLimits) {
   const Folder folder;
   write_rig(folder / "rig.toml");
   const std::string rig = (folder / "rig.toml").string();
@@ -87,7 +87,7 @@ TEST(CameraCommands, CheckByLevelsTellsTheDimmerAndWhatItCannot) {
 }
 
 // The simulated lamp's curve is the rig file's raised to 1 ± 0.08, by the seed; its camera is linear.
-TEST(CameraCommands, CheckByLevelsOfASimulatedRigTellsItsDimmerFromItsCamera) {
+TEST(CameraCommands, CheckByLevelsSeparatesASimulatedDimmerFromItsCamera) {
   const Folder folder;
   std::ofstream(folder / "rig.toml") << R"([rig]
 name = "levels"
@@ -140,7 +140,7 @@ position_m = [0, 0, 0.51]
   EXPECT_GT(std::abs(exponents[0] - exponents[1]), 0.003) << "two worlds";
 }
 
-TEST(CameraCommands, CheckTellsTheGammaAndItsCurveMakesPicturesLinear) {
+TEST(CameraCommands, CheckReportsTheGammaAndItsCurveMakesPicturesLinear) {
   const Folder folder;
   write_bracket(folder / "shots");
   write_rig(folder / "rig.toml");
@@ -177,7 +177,7 @@ TEST(CameraCommands, CheckTellsTheGammaAndItsCurveMakesPicturesLinear) {
   EXPECT_NEAR(sum / kHeight_px, truly, 0.01 * truly);
 }
 
-TEST(CameraCommands, SayWhatIsWrong) {
+TEST(CameraCommands, ReportErrors) {
   const Folder folder;
   const std::string rig = (folder / "rig.toml").string(), picture = (folder / "shot.pfm").string();
   write_rig(rig);

@@ -54,7 +54,7 @@ position_m = [1.8, 2.6, 0.4]
 normal = [0, 0, 1]
 )";
 
-TEST(Check, NotesOnARigThatDoesNotFitItsSceneAreSaidWithPlaceFigureAndMendAndDoNotRefuse) {
+TEST(Check, NotesAMisfitRigWithPlaceFigureAndRemedyWithoutRefusingIt) {
   SpoiltRoom room;
   room.add(kInsideADesk);
   room.add("[[point]]\nname = \"behind\"\nposition_m = [3.0, 5.01, 1.5]\nnormal = [0, -1, 0]\n");
@@ -74,7 +74,7 @@ TEST(Check, NotesOnARigThatDoesNotFitItsSceneAreSaidWithPlaceFigureAndMendAndDoN
   EXPECT_FALSE(out["notes"][0]["mend"].get<std::string>().empty());
 }
 
-TEST(Check, AMeshWithZUpThatIsReadWithYUpIsNoted) {
+TEST(Check, NotesAZUpMeshReadAsYUp) {
   SpoiltRoom room;
   room.replace("up_axis = \"z\"", "# up_axis");
   const Ran ran = room.run("check");
@@ -82,7 +82,7 @@ TEST(Check, AMeshWithZUpThatIsReadWithYUpIsNoted) {
   EXPECT_NE(ran.output.find("set up_axis = \"z\" in [scene]"), std::string::npos) << ran.output;
 }
 
-TEST(Check, AMeshInMetresThatIsReadInMillimetresIsNoted) {
+TEST(Check, NotesAMeshInMetresReadAsMillimetres) {
   SpoiltRoom room;
   room.replace("up_axis = \"z\"", "up_axis = \"z\"\nunit = \"mm\"");
   const Ran ran = room.run("check");
@@ -90,7 +90,7 @@ TEST(Check, AMeshInMetresThatIsReadInMillimetresIsNoted) {
   EXPECT_NE(ran.output.find("set unit = \"m\" in [scene]"), std::string::npos) << ran.output;
 }
 
-TEST(Check, NothingIsNotedOfTheRigsThatAreShipped) {
+TEST(Check, NotesNothingOnShippedRigs) {
   for (const auto& entry : std::filesystem::directory_iterator(source("rigs"))) {
     if (!std::filesystem::exists(entry.path() / "rig.toml")) continue;
     const json out = json_in(luxrig::testing::run({program("luxrig"), "check", entry.path().string(), "--json"}));
@@ -98,7 +98,7 @@ TEST(Check, NothingIsNotedOfTheRigsThatAreShipped) {
   }
 }
 
-TEST(Check, ALampInAPointIsRefusedByNameByEveryCommandThatComputes) {
+TEST(Check, EveryComputingCommandRefusesALampInAPointByName) {
   SpoiltRoom room;
   room.add(R"([[luminaire]]
 name = "bulb"
@@ -125,7 +125,7 @@ normal = [0, 0, 1]
   }
 }
 
-TEST(Check, ANullBusIsPlannedWithAndNotRun) {
+TEST(Check, ANullBusCanBePlannedButNotRun) {
   SpoiltRoom room;
   for (const char* driver : {"driver = \"sacn\"", "driver = \"modbus_tcp\""}) room.replace(driver, "driver = \"null\"");
   for (int address = 1; address <= 6; ++address) room.replace("address = " + std::to_string(address) + "\n", "");
@@ -196,7 +196,7 @@ position_m = [3.0, 4.7, 0.3]
 normal = [0, 0, -1]
 )";
 
-TEST(Enough, APointInACupboardDoesNotKeepEvaluateAndSolveFromEnding) {
+TEST(Enough, APointInACupboardDoesNotKeepEvaluateAndSolveRunning) {
   SpoiltRoom room;
   room.add(kCupboard);
   const json out = json_in(room.run("evaluate", {"--max-error", "0.003", "--json"}));
@@ -210,7 +210,7 @@ TEST(Enough, APointInACupboardDoesNotKeepEvaluateAndSolveFromEnding) {
   EXPECT_TRUE(json_in(solved)["transport"]["reached"].get<bool>()) << solved.output;
 }
 
-TEST(Enough, WhenTheTimeIsUpWhatIsReachedIsSaidAndProgressBeforeThat) {
+TEST(Enough, ReportsProgressAndTheReachedErrorWhenTheTimeIsUp) {
   SpoiltRoom room;
   const Ran ran = room.run("evaluate", {"--model", "path", "--max-error", "0.0001", "--max-seconds", "3", "--json"});
   EXPECT_EQ(ran.code, 0) << ran.output;
@@ -229,7 +229,7 @@ TEST(Enough, WhenTheTimeIsUpWhatIsReachedIsSaidAndProgressBeforeThat) {
   for (const json& point : out["points"]) EXPECT_GT(point["standard_error_lux"].get<double>(), 0) << point;
 }
 
-TEST(Enough, TheWorstPointIsHeldToItsOwnErrorWhenThatIsAskedFor) {
+TEST(Enough, HoldsTheWorstPointToItsErrorOnRequest) {
   const json out = json_in(luxrig::testing::run(
       {program("luxrig"), "evaluate", source("tests/rigs/room"), "--worst-error", "0.02", "--json"}));
   ASSERT_TRUE(out.is_object());
@@ -243,7 +243,7 @@ TEST(Enough, TheWorstPointIsHeldToItsOwnErrorWhenThatIsAskedFor) {
       << "one of both";
 }
 
-TEST(Enough, StrictFailsWhenTheErrorIsNotReachedAndOnlyThen) {
+TEST(Enough, StrictFailsOnlyWhenTheErrorIsNotReached) {
   SpoiltRoom room;
   const std::vector<std::string> too_much = {"--max-error", "0.0001", "--max-seconds", "1", "--strict"};
   EXPECT_EQ(room.run("evaluate", too_much).code, 1);

@@ -42,7 +42,7 @@ std::vector<std::string> offered(std::vector<std::string> words) {
   return lines;
 }
 
-TEST(CommandTable, EveryCommandHasANameOfItsOwnAGroupAndASummaryOfOneLine) {
+TEST(CommandTable, EveryCommandHasAUniqueNameAGroupAndAOneLineSummary) {
   std::set<std::string> names;
   std::vector<std::string> groups;
   for (const Command& command : command_table()) {
@@ -57,7 +57,7 @@ TEST(CommandTable, EveryCommandHasANameOfItsOwnAGroupAndASummaryOfOneLine) {
       << "commands of a group stand together";
 }
 
-TEST(CommandTable, HelpHasOneLineForEachCommandAndEndsWithHowToGoOn) {
+TEST(CommandTable, HelpListsEachCommandOnOneLineAndEndsWithAHint) {
   const std::vector<std::string> help = lines_of(help_of({}));
   std::string group;
   auto at = help.begin();
@@ -101,7 +101,7 @@ TEST(CommandTable, EveryCommandHasAManPage) {
   EXPECT_EQ(luxrig::testing::run({program("luxrig"), "--man-pages", "/nowhere"}).code, 1);
 }
 
-TEST(CommandTable, TheShellIsOfferedEveryCommandAndItsOptions) {
+TEST(CommandTable, ShellCompletionOffersEveryCommandAndItsOptions) {
   std::vector<std::string> names;
   for (const Command& command : command_table()) names.emplace_back(command.name);
   EXPECT_EQ(offered({""}), names);
@@ -138,7 +138,7 @@ TEST(CommandTable, BashCompletesCommandsOptionsWordsAndRigs) {
   EXPECT_EQ(completed({"apply", ""}), "\n") << "bash offers files by itself";
 }
 
-TEST(CommandTable, EveryProgramPrintsWhatTheShellsRead) {
+TEST(CommandTable, EveryProgramPrintsItsShellCompletions) {
   for (const char* name : {"luxrig", "luxrigd", "luxrig-sim"}) {
     for (const char* shell : {"bash", "zsh", "fish"}) {
       const Ran ran = luxrig::testing::run({program(name), "--completion", shell});

@@ -56,7 +56,7 @@ TEST(Commands, SolveJsonHasTheContractsKeysAndEvaluateAgreesWithIt) {
   }
 }
 
-TEST(Commands, CheckTakesEveryRigThatIsShipped) {
+TEST(Commands, CheckAcceptsEveryShippedRig) {
   std::vector<std::string> rigs = {source("rigs/studio/can.toml"), source("rigs/planning/hung.toml")};
   for (const auto& entry : std::filesystem::directory_iterator(source("rigs")))
     if (std::filesystem::exists(entry.path() / "rig.toml")) rigs.push_back(entry.path().string());
@@ -68,7 +68,7 @@ TEST(Commands, CheckTakesEveryRigThatIsShipped) {
   }
 }
 
-TEST(Commands, ImportMakesARigThatCheckTakesAndNeverWritesOverOne) {
+TEST(Commands, ImportMakesAValidRigAndNeverOverwritesOne) {
   const Folder folder;
   const std::string rig = (folder / "imported").string();
   const std::string mvr = source("tests/data/fixtures/7-fixtures-sample.mvr");
@@ -86,7 +86,7 @@ TEST(Commands, ImportMakesARigThatCheckTakesAndNeverWritesOverOne) {
   EXPECT_NE(again.output.find("there is a rig already"), std::string::npos) << again.output;
 }
 
-TEST(Commands, DaylightIsReportedByItselfAndCountedInEverything) {
+TEST(Commands, DaylightIsReportedSeparatelyAndCountedEverywhere) {
   const Folder folder;
   const auto plan = (folder / "plan.json").string();
   const Ran solved = luxrig::testing::run(
@@ -121,7 +121,7 @@ TEST(Commands, DaylightIsReportedByItselfAndCountedInEverything) {
   EXPECT_TRUE(out["limits"][0]["met"].get<bool>()) << out["limits"][0];
 }
 
-TEST(Commands, ALimitThatDaylightAloneBreaksIsSaidAndNotSolved) {
+TEST(Commands, SolveRefusesALimitThatDaylightAloneBreaks) {
   const Folder folder;
   std::filesystem::copy(source("rigs/reading-room"), folder / "room");
   std::string text = text_of(folder / "room/rig.toml");
@@ -133,7 +133,7 @@ TEST(Commands, ALimitThatDaylightAloneBreaksIsSaidAndNotSolved) {
   EXPECT_NE(ran.output.find("of daylight alone, its limit is 60 lx"), std::string::npos) << ran.output;
 }
 
-TEST(Commands, SolveMixesColoursWithinALimitOfPowerAndThePlanRenders) {
+TEST(Commands, SolveMixesColoursWithinAPowerLimitAndThePlanRenders) {
   const Folder folder;
   const auto plan = (folder / "plan.json").string();
   const Ran ran = luxrig::testing::run({program("luxrig"), "solve", source("rigs/stage"), "-o", plan});
@@ -208,7 +208,7 @@ TEST(Commands, SolvePlacesLightsAndEvaluateAndRenderShowThem) {
   EXPECT_EQ(picture.code, 0) << picture.output;
 }
 
-TEST(Commands, PlacesDoNotDependOnTheThreads) {
+TEST(Commands, PlacementDoesNotDependOnTheThreads) {
   const Folder folder;
   const auto lights = [&](const char* threads) {
     return places_found(folder / "plan.json", {"--threads", threads})["tasks"][0]["lights"].dump();
@@ -216,13 +216,13 @@ TEST(Commands, PlacesDoNotDependOnTheThreads) {
   EXPECT_EQ(lights("1"), lights("3"));
 }
 
-TEST(Commands, ARigWhoseLightsAreYetToBeHungCannotRun) {
+TEST(Commands, ARigWithUnhungLightsCannotRun) {
   const Ran ran = luxrig::testing::run({program("luxrig"), "run", source("tests/rigs/hang"), "--sim", "--once"});
   EXPECT_EQ(ran.code, 2);
   EXPECT_NE(ran.output.find("nothing hangs in this rig yet"), std::string::npos) << ran.output;
 }
 
-TEST(Commands, AnInterruptEndsASearchForPlacesWithTheBestSoFar) {
+TEST(Commands, AnInterruptEndsAPlacementSearchWithTheBestSoFar) {
   const Folder folder;
   std::filesystem::copy(source("tests/rigs/hang"), folder / "hang");
   std::string text = text_of(folder / "hang/rig.toml");
@@ -252,7 +252,7 @@ TEST(Commands, AnInterruptEndsASearchForPlacesWithTheBestSoFar) {
   EXPECT_EQ(out["points"].size(), 400u);
 }
 
-TEST(Commands, ASurfaceThatIsNotThereIsRefusedWithItsPlace) {
+TEST(Commands, AMissingSurfaceIsRefusedWithItsPlace) {
   const Folder folder;
   std::filesystem::copy(source("tests/rigs/hang"), folder / "hang");
   std::string text = text_of(folder / "hang/rig.toml");
@@ -267,7 +267,7 @@ TEST(Commands, ASurfaceThatIsNotThereIsRefusedWithItsPlace) {
   }
 }
 
-TEST(Commands, SameSeedSameBytesWhateverTheThreads) {
+TEST(Commands, EvaluateGivesTheSameResultForAnyNumberOfThreads) {
   const auto lux = [](const char* threads) {
     const Ran ran = luxrig::testing::run({program("luxrig"), "evaluate", source("tests/rigs/room"), "--max-error",
                                           "0.02", "--threads", threads, "--json"});
@@ -294,7 +294,7 @@ TEST(Commands, BadRigsAreRefusedWithTheirPlaceBeforeAnythingMoves) {
   EXPECT_GE(seen, 30);
 }
 
-TEST(Commands, ClientsSayWhatToDoWhenThereIsNoDaemon) {
+TEST(Commands, ClientsReportTheRemedyWithoutADaemon) {
   const Ran ran = luxrig::testing::run({program("luxrig"), "status", "--port", "9"});
   EXPECT_EQ(ran.code, 1);
   EXPECT_NE(ran.output.find("luxrig run"), std::string::npos) << ran.output;

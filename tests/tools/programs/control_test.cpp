@@ -14,7 +14,7 @@ std::map<std::string, double> levels_of(const json& truth) {
   return level;
 }
 
-TEST(Control, OutputsDoWithoutDataWhatCheckSays) {
+TEST(Control, OutputsBehaveWithoutDataAsCheckStates) {
   const std::string rig_file = source("tests/rigs/without-data");
   const Ran table = luxrig::testing::run({program("luxrig"), "check", rig_file, "--outputs"});
   ASSERT_EQ(table.code, 0) << table.output;
@@ -73,7 +73,7 @@ TEST(Control, OutputsDoWithoutDataWhatCheckSays) {
   }
 }
 
-TEST(Control, AParkedHeadRestsUntilTheNextPlanAlsoAfterARestart) {
+TEST(Control, AParkedHeadRestsUntilTheNextPlanEvenAcrossARestart) {
   LiveRig rig(source("tests/rigs/parking"));
   ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.daemon().output();
   const auto park = [&](const std::vector<std::string>& names) {

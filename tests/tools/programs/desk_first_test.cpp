@@ -74,7 +74,7 @@ bool follows(const json& status) {
 class DeskThere : public ::testing::TestWithParam<const char*> {};
 
 /// The desk sends to the lamps and to Luxrig, as a multicast would.
-TEST_P(DeskThere, BesideADeskInStandbyNoFrameOfANewDaemonReachesTheLamps) {
+TEST_P(DeskThere, ANewDaemonInStandbySendsNoFrameBesideADesk) {
   for (const bool guarded : {false, true}) {
     DeskFirst bench(GetParam(), "standby",
                     guarded ? std::vector<std::string>{} : std::vector{std::string("--no-guardian")});
@@ -111,7 +111,7 @@ TEST_P(DeskThere, BesideADeskInStandbyNoFrameOfANewDaemonReachesTheLamps) {
 }
 
 /// The desk sends only to Luxrig: a new daemon sends nothing until it knows the desk's values.
-TEST_P(DeskThere, ADeskThatTakesOverKeepsTheLightWhenTheDaemonIsStartedAnew) {
+TEST_P(DeskThere, ADeskThatTookOverKeepsTheLightAcrossADaemonRestart) {
   DeskFirst bench(GetParam(), "takeover", {});
   ASSERT_TRUE(bench.rig.wait_phase("holding", 60s)) << bench.rig.daemon().output();
   test::DeskSlots slots(512, 0);
@@ -131,7 +131,7 @@ TEST_P(DeskThere, ADeskThatTakesOverKeepsTheLightWhenTheDaemonIsStartedAnew) {
   EXPECT_NEAR(bench.bulb(), desks, 0.01);
 }
 
-TEST_P(DeskThere, WithNoDeskHeardTheLightFadesInAfterListening) {
+TEST_P(DeskThere, TheLightFadesInAfterListeningWithoutADesk) {
   DeskFirst bench(GetParam(), "standby", {"--no-guardian"});
   const auto seen = bench.watch([](const json& s) { return s["phase"] == "holding"; }, 60s);
   ASSERT_TRUE(seen.reached) << bench.rig.daemon().output();

@@ -105,7 +105,7 @@ constexpr double kDark = 0.03;
 
 class DeskAndZone : public ::testing::TestWithParam<const char*> {};
 
-TEST_P(DeskAndZone, AHeadThatIsTurnedThroughAZoneIsDarkWhileItCrosses) {
+TEST_P(DeskAndZone, AHeadTurnedThroughAZoneIsDarkWhileItCrosses) {
   // Light on the seats with an unguarded head: shows that this test can fail.
   double unguarded_lx = 0;
   {
@@ -152,7 +152,7 @@ TEST_P(DeskAndZone, AHeadThatIsTurnedThroughAZoneIsDarkWhileItCrosses) {
   EXPECT_LT(bench.max_at_a_seat_lx(), 0.12 * unguarded_lx) << "of " << unguarded_lx;
 }
 
-TEST_P(DeskAndZone, ADeskThatAimsIntoAZoneAndStaysHasADarkHeadThere) {
+TEST_P(DeskAndZone, AHeadThatADeskKeepsAimedIntoAZoneStaysDark) {
   ZoneBench bench(GetParam());
   ASSERT_TRUE(bench.rig.wait_phase("holding", 60s)) << bench.rig.daemon().output();
   // Near a zone, the head lights up only once it can be nowhere but at its aim.

@@ -33,7 +33,7 @@ double level_of(const json& status, const std::string& name, const char* key) {
   return -1;
 }
 
-TEST(FailureDomains, ADeadDimmerIsOneLineAndTheOtherLampsStay) {
+TEST(FailureDomains, ADeadDimmerLogsOneLineAndTheOtherLampsStay) {
   const ChangedRoom room([](std::string& text) { replace(text, "on_meter_loss = true", "on_meter_loss = false"); });
   LiveRig rig(room.path());
   ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.daemon().output();
@@ -58,7 +58,7 @@ TEST(FailureDomains, ADeadDimmerIsOneLineAndTheOtherLampsStay) {
       << rig.last().dump(1);
 }
 
-TEST(FailureDomains, SolveSaysWhatTheMarginOfALimitTakesAndTheDaemonTakesJustThat) {
+TEST(FailureDomains, SolveStatesTheMarginOfALimitAndTheDaemonAppliesIt) {
   const ChangedRoom room([](std::string& text) {
     const auto meters = text.find("[[luxmeter]]"), points = text.find("[[point]]");
     text.erase(meters, points - meters);

@@ -13,7 +13,7 @@ double min_level(const json& truth) {
 }
 
 // Silent for 5 s; one of these lamps goes dark after 2 s without data.
-TEST(LeftAlone, ADaemonThatStandsStillLeavesTheLightToItsGuardianAndTakesItBack) {
+TEST(LeftAlone, AFrozenDaemonLeavesTheLightToItsGuardianAndTakesItBack) {
   LiveRig rig(source("tests/rigs/without-data"));
   ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.daemon().output();
   ASSERT_TRUE(wait_for([&] { return rig.guardian_pid() > 1; }, 5s)) << rig.daemon().output();
@@ -37,7 +37,7 @@ TEST(LeftAlone, ADaemonThatStandsStillLeavesTheLightToItsGuardianAndTakesItBack)
   EXPECT_FALSE(runs(guardian)) << "only one of them sends";
 }
 
-TEST(LeftAlone, AGuardianThatStandsStillIsReplaced) {
+TEST(LeftAlone, AFrozenGuardianIsReplaced) {
   LiveRig rig(source("tests/rigs/room"));
   ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.daemon().output();
   ASSERT_TRUE(wait_for([&] { return rig.guardian_pid() > 1; }, 5s)) << rig.daemon().output();
@@ -49,7 +49,7 @@ TEST(LeftAlone, AGuardianThatStandsStillIsReplaced) {
 }
 
 // Each death used to double, for good, the time until the next one was noticed.
-TEST(LeftAlone, AGuardianThatDiesNowAndThenIsReplacedAsSoonAsTheFirstTime) {
+TEST(LeftAlone, AGuardianThatDiesRepeatedlyIsReplacedAsFastAsTheFirstTime) {
   LiveRig rig(source("tests/rigs/room"));
   ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.daemon().output();
   const auto unguarded = [](const json& s) {
@@ -67,7 +67,7 @@ TEST(LeftAlone, AGuardianThatDiesNowAndThenIsReplacedAsSoonAsTheFirstTime) {
   }
 }
 
-TEST(LeftAlone, ASignalIsABlackoutThatIsRemembered) {
+TEST(LeftAlone, ASignalTriggersARememberedBlackout) {
   LiveRig rig(source("tests/rigs/room"));
   ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.daemon().output();
   rig.daemon().signal(SIGUSR1);
@@ -77,7 +77,7 @@ TEST(LeftAlone, ASignalIsABlackoutThatIsRemembered) {
       [&] { return json::parse(text_of(rig.file("state/state.json")), nullptr, false)["blackout"] == true; }, 5s));
 }
 
-TEST(LeftAlone, ATerminalThatHangsUpEndsNothing) {
+TEST(LeftAlone, ATerminalHangUpEndsNothing) {
   LiveRig rig(source("tests/rigs/room"));
   ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.daemon().output();
   ASSERT_TRUE(wait_for([&] { return rig.guardian_pid() > 1; }, 5s)) << rig.daemon().output();
@@ -90,7 +90,7 @@ TEST(LeftAlone, ATerminalThatHangsUpEndsNothing) {
 }
 
 // A log that cannot be written used to stop the daemon; the guardian died just when it was needed.
-TEST(LeftAlone, WithAFullLogTheRigIsLitAndItsGuardianKeepsIt) {
+TEST(LeftAlone, AFullLogStopsNeitherTheDaemonNorItsGuardian) {
   LiveRig rig(source("tests/rigs/without-data"));
   ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.daemon().output();
   rig.daemon().signal(SIGTERM);
@@ -111,7 +111,7 @@ TEST(LeftAlone, WithAFullLogTheRigIsLitAndItsGuardianKeepsIt) {
   EXPECT_GT(least, 0.05) << "the watched lamp goes dark 2 s after the last word";
 }
 
-TEST(LeftAlone, ASecondDaemonOfTheSameStateOrTheSameLampsIsRefusedAlsoWhileAGuardianSends) {
+TEST(LeftAlone, ASecondDaemonIsRefusedEvenWhileAGuardianSends) {
   LiveRig rig(source("tests/rigs/room"));
   ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.daemon().output();
   ASSERT_TRUE(wait_for([&] { return rig.guardian_pid() > 1; }, 5s)) << rig.daemon().output();
@@ -135,7 +135,7 @@ TEST(LeftAlone, ASecondDaemonOfTheSameStateOrTheSameLampsIsRefusedAlsoWhileAGuar
   EXPECT_TRUE(rig.wait_phase("holding", 60s)) << rig.daemon().output();
 }
 
-TEST(LeftAlone, WhatTheRigGivesIsKeptForTheNextStartAndWorkedOutAgainWhereItIsDamaged) {
+TEST(LeftAlone, ComputedLightIsKeptForTheNextStartAndRecomputedIfDamaged) {
   LiveRig rig(source("tests/rigs/room"));
   ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.daemon().output();
   for (const bool damaged : {false, true}) {
@@ -153,7 +153,7 @@ TEST(LeftAlone, WhatTheRigGivesIsKeptForTheNextStartAndWorkedOutAgainWhereItIsDa
   }
 }
 
-TEST(LeftAlone, AContactIsABlackoutUntilItIsReleasedAndSomebodyLiftsIt) {
+TEST(LeftAlone, AContactBlackoutLastsUntilReleasedAndLiftedByAPerson) {
   const Folder folder;
   const auto copy = folder / "room";
   std::filesystem::copy(source("tests/rigs/room"), copy, std::filesystem::copy_options::recursive);

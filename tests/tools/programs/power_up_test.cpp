@@ -64,7 +64,7 @@ struct PowerUp {
   std::map<std::string, double> first_lit_s;
 };
 
-TEST(PowerUp, StagesComeOneAfterTheOtherAtTheirTimes) {
+TEST(PowerUp, StagesFollowOneAnotherAtTheirTimes) {
   PowerUp bench;
   const double begun_s = bench.look().at_s;
   ASSERT_TRUE(bench.watch_until_lit("head")) << bench.rig.daemon().output();
@@ -103,7 +103,7 @@ TEST(PowerUp, NoSecondAddsMoreWattsThanAllowed) {
   }
 }
 
-TEST(PowerUp, ADaemonThatDiesInTheMiddleIsFollowedByOneThatGoesOn) {
+TEST(PowerUp, ANewDaemonContinuesThePowerUpOfADeadOne) {
   PowerUp bench;
   ASSERT_TRUE(bench.watch_until_lit("two")) << bench.rig.daemon().output();
   // In the middle of the second lamp's rise.
@@ -143,7 +143,7 @@ TEST(PowerUp, ADaemonThatDiesInTheMiddleIsFollowedByOneThatGoesOn) {
   for (const auto& [name, level] : last.level) EXPECT_GT(level, 0.05) << name;
 }
 
-TEST(PowerUp, AHeadThatWasParkedStaysDarkWhenTheNextDaemonComesUpByStages) {
+TEST(PowerUp, AParkedHeadStaysDarkDuringTheNextDaemonsStages) {
   // As after a power cut: no guardian has held the light.
   PowerUp bench("reset_s = 2\nstage = 3", "reset_s = 2", {"--no-guardian"});
   ASSERT_TRUE(bench.rig.wait_phase("holding", 60s)) << bench.rig.daemon().output();

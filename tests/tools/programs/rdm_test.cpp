@@ -48,7 +48,7 @@ class RdmCommand : public ::testing::TestWithParam<const char*> {
   std::vector<std::string> where_;
 };
 
-TEST_P(RdmCommand, ListsTheHeadsAsTheyArePatchedAndMovesOne) {
+TEST_P(RdmCommand, ListsThePatchedHeadsAndReaddressesOne) {
   const Ran listed = rdm({"list", "--json"});
   ASSERT_EQ(listed.code, 0) << listed.output;
   const json devices = json::parse(listed.output, nullptr, false);
@@ -69,7 +69,7 @@ TEST_P(RdmCommand, ListsTheHeadsAsTheyArePatchedAndMovesOne) {
   EXPECT_NE(stubs.output.find("address = 101"), std::string::npos) << stubs.output;
 }
 
-TEST_P(RdmCommand, SaysWhatIsWrong) {
+TEST_P(RdmCommand, ReportsErrors) {
   const Ran unknown = rdm({"get", "7ff0:00000009", "device_info"});
   EXPECT_EQ(unknown.code, 1);
   EXPECT_NE(unknown.output.find("is on no line"), std::string::npos) << unknown.output;
@@ -82,7 +82,7 @@ TEST_P(RdmCommand, SaysWhatIsWrong) {
 INSTANTIATE_TEST_SUITE_P(On, RdmCommand, ::testing::Values("artnet", "enttec_pro"),
                          [](const auto& driver) { return std::string(driver.param); });
 
-TEST(RdmPlaces, AreRefusedWhereTheyAreNone) {
+TEST(RdmPlaces, AreRefusedIfInvalid) {
   const auto refused = [](std::vector<std::string> words) {
     words.insert(words.begin(), {program("luxrig"), "rdm", "list"});
     return luxrig::testing::run(words);

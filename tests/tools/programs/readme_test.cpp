@@ -40,7 +40,7 @@ std::set<std::string> subcommands() {
   return names;
 }
 
-TEST(Readme, NamesEveryCommandThatThereIsAndNoOther) {
+TEST(Readme, NamesExactlyTheExistingCommands) {
   std::set<std::string> told;
   for (const auto& words : commands_of_readme()) told.insert(words.front());
   std::set<std::string> known = subcommands();
@@ -48,7 +48,7 @@ TEST(Readme, NamesEveryCommandThatThereIsAndNoOther) {
   EXPECT_EQ(told, known);
 }
 
-TEST(Readme, WritesOnlyOptionsThatTheCommandHas) {
+TEST(Readme, UsesOnlyExistingOptions) {
   int options = 0;
   for (const auto& words : commands_of_readme()) {
     const std::string help = luxrig::testing::run({program("luxrig"), words.front(), "--help"}).output;

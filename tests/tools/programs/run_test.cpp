@@ -37,7 +37,7 @@ TEST(Run, OnceReachesTheGoalsWritesTheTableAndEndsCleanly) {
 
 // In the reading room, light for the measured goals leaves an unmeasured goal a fifth short, at the edge of what is
 // known. The noise of the readings decides whether it is called missed or unknown; neither may be wrong.
-TEST(Run, EveryShippedRigReachesItsMeasuredGoalsWithinItsLimitsAndCallsNoGoalMissedThatIsMet) {
+TEST(Run, ShippedRigsMeetMeasuredGoalsWithinLimitsAndCallNoMetGoalMissed) {
   for (const char* name : {"gallery", "studio", "reading-room"}) {
     const Folder folder;
     const auto table = folder / "table.json";
@@ -68,7 +68,7 @@ TEST(Run, EveryShippedRigReachesItsMeasuredGoalsWithinItsLimitsAndCallsNoGoalMis
   }
 }
 
-TEST(Run, LampsOnRelaysAreOnOrOffAndOneThatDimsMakesUpForThem) {
+TEST(Run, LampsOnRelaysAreOnOrOffAndADimmableOneCompensates) {
   const Folder folder;
   const auto table = folder / "table.json", plan = folder / "plan.json";
   const Ran solved =
@@ -102,7 +102,7 @@ TEST(Run, PageShowsTheRunningRig) {
   EXPECT_GT(std::filesystem::file_size(program("../screenshots/daemon.png")), 10'000u);
 }
 
-TEST(Run, KilledSimulatorHoldsThenSafeThenResumesByItself) {
+TEST(Run, AKilledSimulatorHoldsTheLightThenGoesSafeThenResumes) {
   LiveRig rig(source("tests/rigs/room"));
   ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.daemon().output();
   const double lit = rig.level_sum();
@@ -119,7 +119,7 @@ TEST(Run, KilledSimulatorHoldsThenSafeThenResumesByItself) {
   EXPECT_NEAR(rig.level_sum(), lit, 0.1 * lit);
 }
 
-TEST(Run, CutAndGarbledMetersAreNamedWithinTwoSecondsAndForgottenWhenWell) {
+TEST(Run, CutAndGarbledMetersAreNamedWithinTwoSecondsAndClearedAfterwards) {
   LiveRig rig(source("tests/rigs/room"));
   ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.daemon().output();
   for (const char* fault : {"silent", "garbled"}) {
@@ -135,7 +135,7 @@ TEST(Run, CutAndGarbledMetersAreNamedWithinTwoSecondsAndForgottenWhenWell) {
 }
 
 // The second restart used to light the rig by itself: resuming the plan saved a state without blackout.
-TEST(Run, ABlackoutOutlivesRestartsAndADamagedState) {
+TEST(Run, ABlackoutSurvivesRestartsAndADamagedState) {
   LiveRig rig(source("tests/rigs/room"));
   ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.daemon().output();
   ASSERT_EQ(luxrig::testing::run({program("luxrig"), "blackout", "--port", std::to_string(rig.port())}).code, 0);
@@ -155,7 +155,7 @@ TEST(Run, ABlackoutOutlivesRestartsAndADamagedState) {
 }
 
 // A daemon that was killed while it restored the parts one by one used to save a state without a plan.
-TEST(Run, AtNoInstantOfAStartDoesTheDiskForgetWhatHolds) {
+TEST(Run, TheDiskKeepsTheStateAtEveryInstantOfAStart) {
   LiveRig rig(source("tests/rigs/room"));
   ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.daemon().output();
   const std::string port = std::to_string(rig.port());
@@ -185,7 +185,7 @@ TEST(Run, AtNoInstantOfAStartDoesTheDiskForgetWhatHolds) {
 }
 
 // It used to fail to start, after it had sent the guardian away.
-TEST(Run, AStateThatCannotBeSavedIsSaidAndTheRigIsLit) {
+TEST(Run, AnUnsavableStateIsReportedAndTheRigIsLit) {
   LiveRig rig(source("tests/rigs/room"));
   ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.daemon().output();
   const std::string saved = text_of(rig.file("state/state.json"));
@@ -234,7 +234,7 @@ TEST(Run, BlackoutWinsAndIsLiftedByTheCommand) {
   EXPECT_NE(status.output.find("room: holding"), std::string::npos) << status.output;
 }
 
-TEST(Run, ADaemonThatDiesLeavesTheSafeLookToItsGuardianUntilTheNextOne) {
+TEST(Run, ADeadDaemonLeavesTheSafeLookToItsGuardianUntilTheNextOne) {
   LiveRig rig(source("tests/rigs/room"));
   ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.daemon().output();
   ASSERT_TRUE(wait_for([&] { return rig.guardian_pid() > 1; }, 5s)) << rig.daemon().output();
@@ -279,7 +279,7 @@ TEST(Run, ADaemonThatDiesLeavesTheSafeLookToItsGuardianUntilTheNextOne) {
   EXPECT_TRUE(wait_for([&] { return !runs(last) && rig.guardian_pid() == 0; }, 10s));
 }
 
-TEST(Run, ADaemonStartedAnewFadesFromWhatItsGuardianSends) {
+TEST(Run, ARestartedDaemonFadesFromItsGuardiansLevels) {
   LiveRig rig(source("tests/rigs/room"));
   ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.daemon().output();
   ASSERT_TRUE(wait_for([&] { return rig.guardian_pid() > 1; }, 5s)) << rig.daemon().output();
@@ -328,7 +328,7 @@ TEST(Run, ADaemonStartedAnewFadesFromWhatItsGuardianSends) {
   }
 }
 
-TEST(Run, IdentifyShowsInTheRoomWhichLampItIsAndMonitorWhatGoesOut) {
+TEST(Run, IdentifyBlinksALampInTheRoomAndMonitorShowsTheOutput) {
   LiveRig rig(source("tests/rigs/room"));
   ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.daemon().output();
   const std::string port = std::to_string(rig.port());

@@ -57,7 +57,7 @@ TEST(Show, DrawsEveryKindForTheStudiosSkull) {
   }
 }
 
-TEST(Show, AsksWhichObjectAndKnowsTheirNames) {
+TEST(Show, RequiresAnObjectAndSuggestsTheirNames) {
   const Folder folder;
   const Ran which = show(source("rigs/gallery"), "curvature", folder / "a.png");
   EXPECT_EQ(which.code, 2);
@@ -68,7 +68,7 @@ TEST(Show, AsksWhichObjectAndKnowsTheirNames) {
   EXPECT_FALSE(std::filesystem::exists(folder / "a.png"));
 }
 
-TEST(Show, RefusesWhatHasNoRelief) {
+TEST(Show, RefusesObjectsWithoutRelief) {
   const Folder folder;
   const Ran ball = show(rig_with(folder, ball_obj()), "interest", folder / "a.png");
   EXPECT_EQ(ball.code, 2);
@@ -81,7 +81,7 @@ TEST(Show, RefusesWhatHasNoRelief) {
   EXPECT_NE(box.output.find("table: the target"), std::string::npos) << box.output;
 }
 
-TEST(Render, RefusesAnEndingItDoesNotWriteBeforeItComputes) {
+TEST(Render, RefusesAnUnsupportedFileExtensionBeforeComputing) {
   const Folder folder;
   for (const char* name : {"a.gif", "a", "a.jpgg"}) {
     const Ran ran =
@@ -91,7 +91,7 @@ TEST(Render, RefusesAnEndingItDoesNotWriteBeforeItComputes) {
   }
 }
 
-TEST(Render, WritesJpegAndSaysHowItIsExposed) {
+TEST(Render, WritesJpegAndReportsItsExposure) {
   const Folder folder;
   const Ran ran =
       luxrig::testing::run({program("luxrig"), "render", source("rigs/studio"), "-o", folder / "a.jpg", "--exposure",
@@ -109,7 +109,7 @@ TEST(Render, WritesJpegAndSaysHowItIsExposed) {
   }
 }
 
-TEST(Show, RefusesOptionsThatDoNotGoTogether) {
+TEST(Show, RefusesIncompatibleOptions) {
   const Folder folder;
   EXPECT_EQ(show(source("rigs/studio"), "curvatur", folder / "a.png").code, 2);
   EXPECT_EQ(show(source("rigs/studio"), "curvature", folder / "a.png", {"--false-colour", "lux"}).code, 2);

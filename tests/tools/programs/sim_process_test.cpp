@@ -106,7 +106,7 @@ Bytes spot_full() {
   return packet;
 }
 
-TEST(SimProcess, SaysWhereItListensAndComesBackThereAfterSigterm) {
+TEST(SimProcess, ReportsItsPortsAndReusesThemAfterSigterm) {
   const Folder folder;
   json first;
   {
@@ -151,7 +151,7 @@ TEST(SimProcess, AnswersPlainSocketsAsTheDevicesWould) {
       << read_lx << " lx read, " << lux << " lx true";
 }
 
-TEST(SimProcess, SwitchesFaultsAndForgetsPeaksOnRequest) {
+TEST(SimProcess, SwitchesFaultsAndResetsPeaksOnRequest) {
   const Folder folder;
   Simulator sim(folder / "ports.json", folder / "log");
   ASSERT_TRUE(sim.ports().is_object());
@@ -186,7 +186,7 @@ TEST(SimProcess, SwitchesFaultsAndForgetsPeaksOnRequest) {
   EXPECT_EQ(sim.point("floor").value("max_lux_seen", -1.0), 0);
 }
 
-TEST(SimProcess, RefusesARigOrAPortsFileThatIsNone) {
+TEST(SimProcess, RefusesAnInvalidRigOrPortsFile) {
   const Folder folder;
   EXPECT_EQ(run({program("luxrig-sim"), (folder / "nowhere.toml").string()}).code, 2);
   std::ofstream(folder / "ports.json") << "not JSON";

@@ -20,7 +20,7 @@ std::string commit_of_source() {
   return shell("[[ -z $(" + git + "--show-prefix 2>/dev/null || echo none) ]] && " + git + "--short HEAD || true");
 }
 
-TEST(Version, OfEveryProgramNamesTheCommitItWasBuiltOf) {
+TEST(Version, OfEveryProgramNamesItsCommit) {
   const std::string commit = commit_of_source();
   for (const char* name : {"luxrig", "luxrigd", "luxrig-sim", "luxrig-guardian"}) {
     const Ran ran = luxrig::testing::run({program(name), "--version"});
@@ -54,13 +54,13 @@ class Source {
   Folder all_;
 };
 
-TEST(Version, OfATarballIsTheNumberAlone) {
+TEST(Version, OfATarballIsOnlyTheNumber) {
   Source tree;
   tree.write("1");
   EXPECT_EQ(tree.version(), "0.1.0");
 }
 
-TEST(Version, NamesTheCommitAndWhetherFilesDiffer) {
+TEST(Version, NamesTheCommitAndMarksADirtyTree) {
   Source tree;
   tree.write("1");
   tree.git("init -q");
@@ -77,7 +77,7 @@ TEST(Version, NamesTheCommitAndWhetherFilesDiffer) {
   EXPECT_EQ(tree.version(), "0.1.0 (" + two + ")");
 }
 
-TEST(Version, IsNotThatOfARepositoryAround) {
+TEST(Version, IgnoresAnEnclosingRepository) {
   Source tree;
   tree.write("1");
   shell("cd '" + tree.folder() +

@@ -13,7 +13,7 @@ void refuses(const std::vector<std::string>& words, const std::string& with) {
   EXPECT_NE(ran.output.find(with), std::string::npos) << ran.output;
 }
 
-TEST(Words, AMistypedNameIsRefusedWithTheNearest) {
+TEST(Words, AMistypedNameIsRefusedWithTheNearestOne) {
   refuses({"luxrig", "rnu"}, "luxrig: there is no command \"rnu\": did you mean \"run\"?");
   refuses({"luxrig", "render", "x", "-o", "y.png", "--false-color", "lux"},
           "luxrig render: there is no option \"--false-color\": did you mean \"--false-colour\"?");
@@ -31,7 +31,7 @@ TEST(Words, AMistypedNameIsRefusedWithTheNearest) {
   refuses({"luxrig-sim", "rig", "--sed", "3"}, "did you mean \"--seed\"?");
 }
 
-TEST(Words, BlackoutTakesOnAndOff) {
+TEST(Words, BlackoutAcceptsOnAndOff) {
   for (const char* state : {"on", "off"}) {
     const Ran ran = luxrig::testing::run({program("luxrig"), "blackout", state, "--port", "1"});
     EXPECT_EQ(ran.code, 1) << "understood, and nobody answers: " << ran.output;
@@ -39,7 +39,7 @@ TEST(Words, BlackoutTakesOnAndOff) {
   }
 }
 
-TEST(Words, HelpTellsWordsAndDefaults) {
+TEST(Words, HelpListsWordsAndDefaults) {
   const Ran ran = luxrig::testing::run({program("luxrig"), "evaluate", "--help"});
   EXPECT_EQ(ran.code, 0) << ran.output;
   std::string flat;
@@ -50,7 +50,7 @@ TEST(Words, HelpTellsWordsAndDefaults) {
   EXPECT_EQ(ran.output.find("->"), std::string::npos) << ran.output;
 }
 
-TEST(Words, EveryCommandIsInAGroupOfHelp) {
+TEST(Words, HelpGroupsEveryCommand) {
   const Ran ran = luxrig::testing::run({program("luxrig"), "--help"});
   for (const char* text : {"Set a rig:", "Run a show:", "Devices:", "Measure:", "  init ", "  blackout "})
     EXPECT_NE(ran.output.find(text), std::string::npos) << text << ran.output;
@@ -68,7 +68,7 @@ TEST(Words, TheSimulatorsHelpAndReadmeListEveryFault) {
   }
 }
 
-TEST(Words, InitMakesARigThatChecksSolvesAndRuns) {
+TEST(Words, InitMakesARigThatPassesCheckSolveAndRun) {
   const Folder folder;
   const std::string rig = (folder / "my \"gallery\"").string();
   const Ran init = luxrig::testing::run({program("luxrig"), "init", rig});
@@ -85,12 +85,12 @@ TEST(Words, InitMakesARigThatChecksSolvesAndRuns) {
   EXPECT_NE(run.output.find("faults and truth: http://127.0.0.1:"), std::string::npos) << run.output;
 }
 
-TEST(Words, ARigThatCameWithLuxrigIsFoundByItsName) {
+TEST(Words, AShippedRigIsFoundByItsName) {
   const Ran ran = luxrig::testing::run({program("luxrig"), "check", "start"});
   EXPECT_EQ(ran.code, 0) << ran.output;
 }
 
-TEST(Words, TheSimulatorsControlPortMendsWhatItRefusesAndNeedsNoBody) {
+TEST(Words, TheSimulatorsControlPortStatesRemediesAndNeedsNoBody) {
   LiveRig rig(source("tests/rigs/room"));
   const int port = json::parse(text_of(rig.file("ports.json")))["control"]["port"].get<int>();
   // As `curl -X POST` sends it: no body and no content length.

@@ -309,7 +309,7 @@ std::string name_of(const Injection& injection, const std::vector<SeenCall>& cal
 
 class SaveAtomicity : public ::testing::TestWithParam<std::tuple<How, bool>> {};
 
-TEST_P(SaveAtomicity, WhateverHappensAtAnyOfItsSystemCalls) {
+TEST_P(SaveAtomicity, HoldsForAnyFailureOfAnySystemCall) {
   const auto [how, over_old] = GetParam();
   const Outcome whole = save_with(how, over_old, {});
   if (!whole.traced) GTEST_SKIP() << "processes may not be traced here";
@@ -331,7 +331,7 @@ TEST_P(SaveAtomicity, WhateverHappensAtAnyOfItsSystemCalls) {
 }
 
 // A kill does not lose data that the kernel has not written yet; a power cut does.
-TEST_P(SaveAtomicity, IsOnDiskInTheRightOrderForAPowerCut) {
+TEST_P(SaveAtomicity, SyncsInTheRightOrderForAPowerCut) {
   const auto [how, over_old] = GetParam();
   const Outcome whole = save_with(how, over_old, {});
   if (!whole.traced) GTEST_SKIP() << "processes may not be traced here";
@@ -361,7 +361,7 @@ INSTANTIATE_TEST_SUITE_P(Journal, SaveAtomicity,
                          });
 
 // A start that was killed between moving a damaged file aside and saving its legible part used to lose a blackout.
-TEST(SaveAtomicityOfAStart, ABlackoutOutlivesWhateverHappensToTheReadingOfADamagedState) {
+TEST(SaveAtomicityOfAStart, ABlackoutSurvivesAnyFailureWhileReadingADamagedState) {
   constexpr const char* kDamaged = "{\n \"blackout\": true,\n \"by_hand\": [], \"pla";
   const auto start_with = [&](const Injection& injection) {
     const Folder folder;

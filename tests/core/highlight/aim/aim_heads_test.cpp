@@ -40,7 +40,7 @@ TEST(HeadSight, AgreesWithTheDirectEvaluator) {
   EXPECT_LT(lit, lux.size());
 }
 
-TEST(HeadAims, ScoreIsTheLocalContrastByBruteForce) {
+TEST(HeadAims, ScoreMatchesTheLocalContrastByBruteForce) {
   const AimedRelief& relief = aimed_relief();
   const std::vector<HangingHead> heads = rail_of_heads(2);
   const auto aims = relief.aims(heads);
@@ -74,7 +74,7 @@ TEST(HeadAims, ScoreIsTheLocalContrastByBruteForce) {
   EXPECT_LE(score.coverage, 1);
 }
 
-TEST(HeadAims, LightsNothingThatItMayNot) {
+TEST(HeadAims, LightsNoForbiddenDirection) {
   const AimedRelief& relief = aimed_relief();
   std::vector<HangingHead> heads = rail_of_heads(3);
   const auto free = relief.aims(heads)->solve();
@@ -126,7 +126,7 @@ TEST(HeadAims, KeepsEveryLimitOnAllSamples) {
   EXPECT_LT(found->score.local_contrast_lx, bright->score.local_contrast_lx);
 }
 
-TEST(HeadAims, WeightsDoWhatTheySay) {
+TEST(HeadAims, EachWeightImprovesItsOwnTerm) {
   const AimedRelief& relief = aimed_relief();
   const std::vector<HangingHead> heads = rail_of_heads(4);
   const auto solved = [&](const AimWishes& wishes) {
@@ -148,7 +148,7 @@ TEST(HeadAims, WeightsDoWhatTheySay) {
   EXPECT_LT(solved(even).below_base, solved(told).below_base);
 }
 
-TEST(HeadAims, HeadsMoveAsLittleAsTheyCanAndStayWhereTheyLookWhenDark) {
+TEST(HeadAims, HeadsMoveAsLittleAsPossibleAndDarkOnesStayPut) {
   const AimedRelief& relief = aimed_relief();
   std::vector<HangingHead> heads = rail_of_heads(2);
   heads[0].present = {rad_from_deg(200), rad_from_deg(-40)};
@@ -171,7 +171,7 @@ TEST(HeadAims, HeadsMoveAsLittleAsTheyCanAndStayWhereTheyLookWhenDark) {
   EXPECT_EQ(found->heads[1].setting.joints.tilt_rad, heads[1].present.tilt_rad);
 }
 
-TEST(HeadAims, SaysWhichHeadsCannotReachAndRefusesWhenNoneCan) {
+TEST(HeadAims, ReportsHeadsThatCannotReachAndRefusesWhenNoneCan) {
   const AimedRelief& relief = aimed_relief();
   std::vector<HangingHead> heads = rail_of_heads(2);
   heads[1].range = {rad_from_deg(-5), rad_from_deg(5), rad_from_deg(-5), rad_from_deg(5)};
@@ -188,7 +188,7 @@ TEST(HeadAims, SaysWhichHeadsCannotReachAndRefusesWhenNoneCan) {
   EXPECT_NE(none.error().detail.find("no head can be turned"), std::string::npos);
 }
 
-TEST(HeadAims, ZoomsAndHeadsThatDoNotMove) {
+TEST(HeadAims, ChoosesAZoomAndKeepsFixedHeadsStill) {
   const AimedRelief& relief = aimed_relief();
   std::vector<HangingHead> heads = rail_of_heads(2);
   heads[0].zoom = {{make_cosine_power(2000, 4)}, {make_cosine_power(2000, 400)}};
@@ -208,7 +208,7 @@ TEST(HeadAims, ZoomsAndHeadsThatDoNotMove) {
   EXPECT_GE(found->score.objective, 0.98 * without->score.objective);
 }
 
-TEST(HeadAims, RefusesWhatCannotBe) {
+TEST(HeadAims, RefusesInvalidHeadsAndWishes) {
   const AimedRelief& relief = aimed_relief();
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const auto refusal_of = [&](std::vector<HangingHead> heads, AimWishes wishes = {}) {
@@ -249,7 +249,7 @@ TEST(HeadAims, RefusesWhatCannotBe) {
 }
 
 // A key light must not be darker than the fill. The shared limit must leave light for the last head, too.
-TEST(HeadAims, KeepsTheKeyAboveTheFillWhateverTheOrder) {
+TEST(HeadAims, KeepsTheKeyAboveTheFillInAnyOrder) {
   for (std::size_t key = 0; key < 3; ++key) {
     AimWishes wishes;
     wishes.key = key;
@@ -297,7 +297,7 @@ TEST(HeadAims, KeepsAPlaceDark) {
   EXPECT_GT(behind->score.local_contrast_lx, 0);
 }
 
-TEST(HeadAims, KeepsALimitOfPower) {
+TEST(HeadAims, KeepsAPowerLimit) {
   double before = 0;
   for (const double watts : {20.0, 60.0, 150.0}) {
     AimWishes wishes;

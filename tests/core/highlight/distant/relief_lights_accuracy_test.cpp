@@ -15,7 +15,7 @@ namespace {
 
 using namespace relief_lights_fixture;
 
-TEST(LitTable, OfTheSearchIsThatOfEveryRayWithFewer) {
+TEST(LitTable, SearchMatchesEveryRayWithFewerRays) {
   for (const Scene& scene : {make_carved_relief(0.02), make_terrain(100, 60), torus(1, 0.7, 60, 40)}) {
     const ReliefStudy study = studied(scene, 150);
     const ContrastSamples samples = one_ring_samples(study.surface, study.interest);
@@ -35,7 +35,7 @@ TEST(LitTable, OfTheSearchIsThatOfEveryRayWithFewer) {
   }
 }
 
-TEST(ReliefLights, OneIsTheBestOfAllDirectionsTried) {
+TEST(ReliefLights, ASingleLightMatchesTheBestOfAllDirections) {
   for (const Scene& scene : {make_terrain(100, 50), make_carved_relief(0.02)}) {
     const ReliefStudy study = studied(scene, 100);
     ReliefLightOptions options;
@@ -56,7 +56,7 @@ TEST(ReliefLights, OneIsTheBestOfAllDirectionsTried) {
   }
 }
 
-TEST(ReliefLights, TurnWithTheObjectAndDoNotMindAScannersNoise) {
+TEST(ReliefLights, TurnWithTheObjectAndTolerateScannerNoise) {
   const Scene terrain = make_terrain();
   const auto one_light = [](const Scene& scene) {
     const ReliefStudy study = studied(scene, 3000);
@@ -82,7 +82,7 @@ TEST(ReliefLights, TurnWithTheObjectAndDoNotMindAScannersNoise) {
   EXPECT_LT(degrees(one_light(noisy), wanted), 5);
 }
 
-TEST(ReliefLights, ComeFromWhereTheyArePreferredIfTheObjectLeavesItOpen) {
+TEST(ReliefLights, ComeFromThePreferredSideWhereTheObjectAllowsIt) {
   // A bowl in level ground: all sides are equally good.
   const ReliefStudy study = studied(parametric(120, 120,
                                                [](double u, double v) {

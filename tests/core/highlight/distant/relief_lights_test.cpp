@@ -47,7 +47,7 @@ Scene box_from_inside() {
   return with_one_material(box);
 }
 
-TEST(TabledContrast, IsThatOfRays) {
+TEST(TabledContrast, MatchesContrastByRays) {
   const ReliefStudy study = studied(make_terrain(100, 50), 120);
   const ContrastSamples samples = one_ring_samples(study.surface, study.interest);
   const LitTable table = table_of(study, samples, 8, true);
@@ -72,7 +72,7 @@ TEST(TabledContrast, IsThatOfRays) {
   EXPECT_EQ(dark.exposed_contrast, 0);
 }
 
-TEST(TabledContrast, ExposedIsAShareOfTheBrighterOrOfTheMean) {
+TEST(TabledContrast, ExposedContrastIsRelativeToTheBrighterOrTheMean) {
   // Two level places, one of them dark, and one that faces sideways, lit at half.
   ContrastSamples samples;
   samples.interest = 1;
@@ -107,7 +107,7 @@ TEST(ReliefLights, ShineAcrossAGroove) {
   EXPECT_GT(contrast_by_rays(study, {direction}), 3 * contrast_by_rays(study, {along}));
 }
 
-TEST(ReliefLights, KeepTheirDistanceAndAreBetterThanWhereTheyStart) {
+TEST(ReliefLights, KeepTheirDistanceAndImproveOnTheirStart) {
   const ReliefStudy study = studied(make_terrain(100, 60), 200);
   ReliefLightOptions options;
   options.min_angle_rad = rad_from_deg(40);
@@ -128,7 +128,7 @@ TEST(ReliefLights, KeepTheirDistanceAndAreBetterThanWhereTheyStart) {
   }
 }
 
-TEST(ReliefLights, TheirNumberIsWhereExposedContrastPeaks) {
+TEST(ReliefLights, TheirNumberIsAtThePeakOfExposedContrast) {
   const ReliefStudy study = studied(make_terrain(100, 50), 150);
   const auto count = searched(study, {}).count_lights(6);
   ASSERT_TRUE(count);
@@ -141,7 +141,7 @@ TEST(ReliefLights, TheirNumberIsWhereExposedContrastPeaks) {
   EXPECT_LT(count->exposed_contrast[5], count->exposed_contrast[count->best]);
 }
 
-TEST(ReliefStudy, SaysWhatATargetLacks) {
+TEST(ReliefStudy, ReportsWhatATargetLacks) {
   const auto why = [](const Scene& scene) {
     const auto study = study_relief(scene, {});
     return study ? std::string("nothing") : study.error().detail;
@@ -168,7 +168,7 @@ TEST(ReliefLights, RefuseTheInsideOfAClosedBox) {
   EXPECT_NE(search.error().detail.find("closed hull"), std::string::npos);
 }
 
-TEST(ReliefLights, RefuseWhatMakesNoSense) {
+TEST(ReliefLights, RefuseInvalidOptions) {
   const ReliefStudy study = studied(make_terrain(100, 30), 20);
   const auto made = [&](const ReliefLightOptions& options) {
     return ReliefLightSearch::make(study.surface, study.rays, study.interest, options).has_value();

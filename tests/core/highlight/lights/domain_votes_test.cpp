@@ -48,7 +48,7 @@ Vec3 place_of_vote(const DomainVote& vote, std::span<const OrientedPoint> points
          std::sqrt(static_cast<double>(vote.squared_distance_m2)) * vote.direction.cast<double>();
 }
 
-TEST(DomainVotes, WeighAsTheInverseSquareOnEveryLayer) {
+TEST(DomainVotes, FollowTheInverseSquareLawOnEveryLayer) {
   const DrawnEdges drawn(12, 40, 1);
   const LightDomain domain = domain_over(ceiling(50, 3), Vec3::Zero(), {even_layers_m(3, 0.2), 8});
   std::vector<double> reflectance;
@@ -170,7 +170,7 @@ struct WallAndPoints {
   }
 };
 
-TEST(DomainVotes, GatherWhereTheGeometryOfAWallSays) {
+TEST(DomainVotes, GatherWhereAWallsGeometryPredicts) {
   const WallAndPoints wall(1);
   // A strip of ceiling wide enough for all |y| < 2.
   const Scene strip = parametric(2, 2, [](double u, double v) { return Vec3(-4 + 16 * v, 4 * u - 2, 3); });
@@ -212,7 +212,7 @@ TEST(DomainVotes, AreBoundedInNumber) {
   EXPECT_EQ(all->counts.rays, 4000u);
 }
 
-TEST(DomainVotes, SayWhyThereAreNone) {
+TEST(DomainVotes, ReportWhyThereAreNone) {
   const DrawnEdges drawn(10, 20, 5);
   const LightDomain domain = domain_over(ceiling(1, 3), Vec3::Zero());
   const auto why = [&](const DrawnEdges& from, const DomainVoteOptions& options) {
@@ -259,7 +259,7 @@ TEST(DomainVotes, SayWhyThereAreNone) {
   EXPECT_EQ(vote_on_domain(domain, drawn.edges, drawn.points, drawn.features, options).error().cause, Cause::cancelled);
 }
 
-TEST(DomainVotes, OfDegenerateDomainsAreFiniteOrRefused) {
+TEST(DomainVotes, AreFiniteOrRefusedForDegenerateDomains) {
   Random random(21);
   for (unsigned round = 0; round < 60; ++round) {
     const Vec3 shift = round % 3 == 0 ? Vec3(0, 0, 0) : Vec3(1e6 * random.in_cube());
@@ -295,7 +295,7 @@ TEST(DomainVotes, OfDegenerateDomainsAreFiniteOrRefused) {
   }
 }
 
-TEST(CoverageVotes, OfASphereComeFromThePlacesThatSeeThem) {
+TEST(CoverageVotes, ComeFromThePlacesThatSeeASphere) {
   const Scene scene = uv_sphere(0.5, 24);
   const TargetRays target(scene);
   const auto surface = make_target_surface(scene);

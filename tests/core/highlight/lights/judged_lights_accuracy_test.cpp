@@ -14,7 +14,7 @@ namespace {
 
 using namespace judged_lights_fixture;
 
-TEST(JudgedLights, AreNeverBehindThoseThatVotesTake) {
+TEST(JudgedLights, AreNeverWorseThanThoseChosenByVotes) {
   for (const Scene& scene : {make_carved_relief(0.02), make_terrain(100, 50)}) {
     const ReliefStudy study = studied_for_lights(scene);
     const Intensity spot = make_spot(1000, rad_from_deg(20), rad_from_deg(40));

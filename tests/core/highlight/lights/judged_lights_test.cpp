@@ -83,7 +83,7 @@ std::uint32_t index_of(const DrawnRow& row, const JudgedLight& light) {
   return ~0u;
 }
 
-TEST(NumberAtPeak, IsTheFewestLightsThatAreAsGood) {
+TEST(NumberAtPeak, IsTheFewestLightsCloseToThePeak) {
   EXPECT_EQ(number_at_peak({}), 0u);
   EXPECT_EQ(number_at_peak(std::vector<double>{0, 0, 0}), 0u);
   EXPECT_EQ(number_at_peak(std::vector<double>{0.28, 0.45, 0.44, 0.41, 0.457}), 1u);
@@ -91,7 +91,7 @@ TEST(NumberAtPeak, IsTheFewestLightsThatAreAsGood) {
   EXPECT_EQ(number_at_peak(std::vector<double>{0.6, 0.5, 0.4}), 0u);
 }
 
-TEST(JudgedSelection, OneIsTheBestAndOfAPairNoneCanBeBetteredAlone) {
+TEST(JudgedSelection, FindsTheBestSingleLightAndALocallyOptimalPair) {
   double found = 0, best_of_all = 0;
   for (unsigned seed = 0; seed < 60; ++seed) {
     const DrawnRow row(60, 30, seed);
@@ -127,7 +127,7 @@ TEST(JudgedSelection, OneIsTheBestAndOfAPairNoneCanBeBetteredAlone) {
   EXPECT_GT(found, 0.985 * best_of_all);
 }
 
-TEST(JudgedSelection, CandidatesThatCannotMatterAreNotAddedUp) {
+TEST(JudgedSelection, SkipsCandidatesThatCannotMatter) {
   DrawnRow row(200, 300, 5);
   for (std::size_t l = 10; l < row.lights.size(); ++l)
     for (float& lux : row.lights[l].lux) lux *= 0.01f;
@@ -137,7 +137,7 @@ TEST(JudgedSelection, CandidatesThatCannotMatterAreNotAddedUp) {
   EXPECT_LE(selection.added_up(), 20u);
 }
 
-TEST(JudgedSelection, AddedAndRemovedIsAsBefore) {
+TEST(JudgedSelection, RemovingAnAddedLightRestoresTheScore) {
   const DrawnRow row(80, 25, 9);
   JudgedSelection selection = row.selection({});
   selection.add();
@@ -159,7 +159,7 @@ TEST(JudgedSelection, AddedAndRemovedIsAsBefore) {
   EXPECT_LT(selection.taken().size(), 25u);
 }
 
-TEST(JudgedSelection, LightThatStaysCountsAndDarkCandidatesAreNotTaken) {
+TEST(JudgedSelection, CountsFixedLightAndTakesNoDarkCandidate) {
   DrawnRow row(40, 6, 2);
   JudgedWishes wishes;
   wishes.fixed_lux.assign(40, 0);
@@ -176,7 +176,7 @@ TEST(JudgedSelection, LightThatStaysCountsAndDarkCandidatesAreNotTaken) {
   EXPECT_FALSE(empty.add());
 }
 
-TEST(JudgedLights, AreAsRaysHaveThemAndNoPlaceIsBetter) {
+TEST(JudgedLights, MatchRaysAndNoOtherPlaceIsBetter) {
   const ReliefStudy study = studied_for_lights(make_carved_relief(0.02));
   const std::vector<Vec3> places = places_around(study, 3);
   const Intensity spot = make_spot(1000, rad_from_deg(20), rad_from_deg(40));
@@ -205,7 +205,7 @@ TEST(JudgedLights, AreAsRaysHaveThemAndNoPlaceIsBetter) {
   EXPECT_GT(judged->lights(1)->score.local_contrast_lx, 0.95 * best_lx);
 }
 
-TEST(JudgedLights, RefuseWhatCannotBeLit) {
+TEST(JudgedLights, RefuseInvalidCountsAndPlaces) {
   const ReliefStudy study = studied_for_lights(make_terrain(100, 40));
   const Intensity spot = make_spot(1000, rad_from_deg(20), rad_from_deg(40));
   const std::vector<Vec3> above = {Vec3(0, 0, 80)}, below = {Vec3(0, 0, -80)}, nowhere = {Vec3(0, 0, std::nan(""))};

@@ -18,7 +18,7 @@ LightDomain domain_of(const Scene& scene, const LightDomainOptions& options, con
   return std::move(*domain);
 }
 
-TEST(LightDomain, EveryLayerIsHitWhereItsPlaneIs) {
+TEST(LightDomain, RaysHitEveryLayerAtItsPlane) {
   const LightDomain domain = domain_of(ceiling(10, 3), {even_layers_m(4, 0.1), 8});
   EXPECT_EQ(domain.groups(), 4u);
   Random random(3);
@@ -69,7 +69,7 @@ TEST(LightDomain, LayersOfABoxAreBoxes) {
   }
 }
 
-TEST(LightDomain, PiecesThatLieApartAreCellsApart) {
+TEST(LightDomain, SeparatePiecesAreSeparateCells) {
   const Scene two = joined(ceiling(1, 2), ceiling(1, 3));
   const LightDomain domain = domain_of(two, {{0, 0.5}, 2});
   EXPECT_EQ(domain.groups(), 4u);
@@ -82,7 +82,7 @@ TEST(LightDomain, PiecesThatLieApartAreCellsApart) {
   EXPECT_EQ(groups.size(), 4u);
 }
 
-TEST(LightDomain, ChosenTrianglesAloneCount) {
+TEST(LightDomain, CountsOnlyTheChosenTriangles) {
   const Scene two = joined(ceiling(1, 2), ceiling(1, 3));
   std::vector<std::uint8_t> upper(two.triangles.size(), 0);
   std::fill(upper.begin() + static_cast<std::ptrdiff_t>(two.triangles.size() / 2), upper.end(), 1);
@@ -95,7 +95,7 @@ TEST(LightDomain, ChosenTrianglesAloneCount) {
   EXPECT_NEAR(hits[0].distance_m, 3 * std::sqrt(1 + 0.0125), 1e-6);
 }
 
-TEST(LightDomain, CellsShareItsAreaAndTheirMiddlesLieInThem) {
+TEST(LightDomain, CellsShareItsAreaAndContainTheirCentres) {
   for (const Vec3& centre : {Vec3(0, 0, 0), Vec3(4e5, -2e6, 900)}) {
     Scene scene = ceiling(3, 2);
     scene.origin_world_m = centre;
@@ -137,7 +137,7 @@ TEST(LightDomain, BoxesStandAroundTheTarget) {
   EXPECT_FALSE(nested_box_domain(*make_target_surface(Scene{}), {}));
 }
 
-TEST(LightDomain, RefusesWhatIsNone) {
+TEST(LightDomain, RefusesEmptyAndNonFiniteMeshes) {
   const auto detail = [](const Scene& scene, const LightDomainOptions& options) {
     const auto domain = mesh_light_domain(scene, {}, Vec3::Zero(), options);
     return domain ? std::string() : domain.error().detail;
@@ -157,7 +157,7 @@ TEST(LightDomain, RefusesWhatIsNone) {
   EXPECT_FALSE(mesh_light_domain(ceiling(1, 2), few, Vec3::Zero(), {}));
 }
 
-TEST(LightDomain, OfAnyTrianglesIsHitAsEachOfThemIs) {
+TEST(LightDomain, HitsMatchThoseOfEachTriangle) {
   Random random(11);
   for (int round = 0; round < 20; ++round) {
     Scene soup;
@@ -205,7 +205,7 @@ TEST(LightDomain, OfAnyTrianglesIsHitAsEachOfThemIs) {
   }
 }
 
-TEST(LightDomain, TrianglesWithoutAreaAndBothSidesOfASheetDoNoHarm) {
+TEST(LightDomain, ToleratesZeroAreaTrianglesAndDoubleSidedSheets) {
   Scene sheet = ceiling(1, 2);
   const std::size_t count = sheet.triangles.size();
   for (std::size_t t = 0; t < count; ++t) {

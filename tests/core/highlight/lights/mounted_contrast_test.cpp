@@ -49,7 +49,7 @@ TEST(MountedContrast, IsIntensityTimesCosineOverSquaredDistance) {
   EXPECT_EQ(measured.lit_points, 1);
 }
 
-TEST(MountedContrast, OfAFarLightIsThatOfADistantOne) {
+TEST(MountedContrast, OfAFarLightEqualsThatOfADistantOne) {
   const Scene scene = saddle(0.5, 0.4, 24);
   const auto surface = make_target_surface(scene);
   const TargetRays target(scene);
@@ -71,7 +71,7 @@ TEST(MountedContrast, OfAFarLightIsThatOfADistantOne) {
   EXPECT_NEAR(a.lit_points, b.lit_points, 0.01);
 }
 
-TEST(MountedContrast, TargetEnvironmentAndPeopleStandInTheWay) {
+TEST(MountedContrast, CountsShadowsOfTargetEnvironmentAndPeople) {
   // A lamp 1 m above the floor's middle. A wall from x = 0.5 m on, half as high, shades the floor beyond x = 1 m.
   const LevelFloor floor;
   const std::vector<MountedBeam> beams = {aimed_beam({0.01, 0.01, 1}, -Vec3::UnitZ(), make_lambertian(100))};
@@ -99,7 +99,7 @@ TEST(MountedContrast, TargetEnvironmentAndPeopleStandInTheWay) {
   EXPECT_NEAR(own.lit_points, expected_lit, 1.5 * 21 / static_cast<double>(floor.all.size()));
 }
 
-TEST(MountedContrast, WhatStandsBehindTheLampShadesNothing) {
+TEST(MountedContrast, ObjectsBehindTheLampShadeNothing) {
   const LevelFloor floor;
   const Scene with_lid = joined(floor.scene, ceiling(5, 1.2));
   const std::vector<MountedBeam> below = {aimed_beam({0, 0, 1}, -Vec3::UnitZ(), make_lambertian(100))};

@@ -18,7 +18,7 @@ Vec3 direction_near(Random& random, const Vec3& middle, double within_rad) {
   return std::sqrt(1 - z * z) * (std::cos(angle) * x + std::sin(angle) * y) + z * middle;
 }
 
-TEST(DirectionModes, StandInTheMiddleOfBlobs) {
+TEST(DirectionModes, LieAtTheCentresOfClusters) {
   Random random(1);
   for (int round = 0; round < 10; ++round) {
     const Vec3 a = random.direction(), b = direction_near(random, -a, 1);
@@ -39,7 +39,7 @@ TEST(DirectionModes, StandInTheMiddleOfBlobs) {
   }
 }
 
-TEST(DirectionModes, CountWeights) {
+TEST(DirectionModes, RespectWeights) {
   const Vec3f a(1, 0, 0), b(0, 1, 0), c = Vec3f(1, 0.1f, 0).normalized();
   const std::vector<Vec3f> directions = {a, b, c, Vec3f(0, 0, 1)};
   const std::vector<double> weights = {3, 2, 1, 0};
@@ -101,7 +101,7 @@ DomainVotes one_cell(const std::vector<std::tuple<Vec3, std::uint32_t, int>>& bl
   return votes;
 }
 
-TEST(PotentialLights, ShineAgainstTheirVotes) {
+TEST(PotentialLights, ShineOppositeToTheirVotes) {
   const Vec3 a = Vec3(1, 0.2, 0.4).normalized(), b = Vec3(-0.2, 1, 0.3).normalized(), c(0, 0, 1);
   const DomainVotes votes = one_cell({{a, 0, 200}, {a, 2, 100}, {b, 1, 100}, {c, 3, 6}}, 5);
   PotentialLightOptions options;
@@ -186,7 +186,7 @@ std::vector<std::uint32_t> chosen_vote_by_vote(std::vector<DrawnVote> votes, std
   return chosen;
 }
 
-TEST(LightSelection, TakesWhatStrikingVotesByHandLeaves) {
+TEST(LightSelection, MatchesStrikingOutVotesOneByOne) {
   for (unsigned seed = 0; seed < 40; ++seed) {
     const DrawnTable table(30, 60, 1 + static_cast<int>(seed % 7), seed);
     std::vector<double> weights;
@@ -207,7 +207,7 @@ TEST(LightSelection, TakesWhatStrikingVotesByHandLeaves) {
   }
 }
 
-TEST(LightSelection, DependsOnWhatIsTakenAloneNotOnTheWay) {
+TEST(LightSelection, DependsOnlyOnTheLightsTakenNotOnTheirOrder) {
   Random random(7);
   for (unsigned seed = 0; seed < 20; ++seed) {
     const DrawnTable table(40, 80, 6, 100 + seed);
@@ -234,7 +234,7 @@ TEST(LightSelection, DependsOnWhatIsTakenAloneNotOnTheWay) {
   }
 }
 
-TEST(LightSelection, AddingAgainWhatWasRemovedLastIsSelectingAtOnce) {
+TEST(LightSelection, AddingRemovedLightsAgainMatchesSelectingAtOnce) {
   const DrawnTable table(50, 100, 8, 3);
   LightSelection at_once(table.lights);
   for (int i = 0; i < 6; ++i) at_once.add();
@@ -246,7 +246,7 @@ TEST(LightSelection, AddingAgainWhatWasRemovedLastIsSelectingAtOnce) {
   EXPECT_TRUE(std::ranges::equal(at_once.taken(), again.taken()));
 }
 
-TEST(LightSelection, AStepCostsTheEntriesOfItsFeatures) {
+TEST(LightSelection, AStepTouchesOnlyTheEntriesOfItsFeatures) {
   const DrawnTable table(200, 500, 10, 9);
   LightSelection selection(table.lights);
   for (int i = 0; i < 5; ++i) {
@@ -267,7 +267,7 @@ TEST(LightSelection, AStepCostsTheEntriesOfItsFeatures) {
   }
 }
 
-TEST(LightSelection, AFeatureIsServedByAShareOfItsPointsIfThatIsAsked) {
+TEST(LightSelection, AFeatureCanRequireAShareOfItsPointsToBeServed) {
   PotentialLights lights;
   lights.features = 2;
   lights.points_of_feature = {10, 10};

@@ -53,7 +53,7 @@ TEST(DirectionMap, LeftIsLeftAndUpIsUpOnBothHalves) {
   EXPECT_NEAR(up.y, 1, 1e-12);
 }
 
-TEST(DirectionMap, OutsideTheCircleIsItsRim) {
+TEST(DirectionMap, MapsPointsOutsideTheCircleToItsRim) {
   const DirectionMap map(Vec3::UnitX());
   EXPECT_LT((map.direction_at({false, 3, 0}) - map.direction_at({true, 1, 0})).norm(), 1e-9);
 }

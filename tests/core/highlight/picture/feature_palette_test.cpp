@@ -9,7 +9,7 @@
 namespace luxrig {
 namespace {
 
-TEST(FeaturePalette, TwoColoursDoForAChain) {
+TEST(FeaturePalette, AChainNeedsOnlyTwoColours) {
   std::vector<OrientedPoint> points;
   FeatureClusters features;
   for (std::uint32_t cluster = 0; cluster < 9; ++cluster)
@@ -24,7 +24,7 @@ TEST(FeaturePalette, TwoColoursDoForAChain) {
   for (const std::uint32_t colour : feature_colours(points, features, 0.5, 2)) EXPECT_EQ(colour, 0u);
 }
 
-TEST(FeaturePalette, NeighboursDifferWhereThereAreEnoughColours) {
+TEST(FeaturePalette, NeighboursDifferWhenThereAreEnoughColours) {
   Random random(5);
   std::vector<OrientedPoint> points;
   FeatureClusters features;
@@ -50,7 +50,7 @@ TEST(FeaturePalette, NeighboursDifferWhereThereAreEnoughColours) {
   EXPECT_GT(std::set(colours.begin(), colours.end()).size(), 2u);
 }
 
-TEST(FeaturePalette, TheRarestAmongNeighboursWhereThereAreNot) {
+TEST(FeaturePalette, TakesTheRarestNeighbouringColourWhenThereAreTooFew) {
   // All near each other: five clusters, two colours, which alternate.
   std::vector<OrientedPoint> points;
   FeatureClusters features;

@@ -39,7 +39,7 @@ TEST(ObjectView, PlaceInPictureIsTheInverseOfRayDirection) {
   }
 }
 
-TEST(ObjectView, ACameraThatShowsFillsTheFrameAsFarAsAsked) {
+TEST(ObjectView, ACameraThatShowsFillsTheRequestedShareOfTheFrame) {
   Random random(2);
   for (int i = 0; i < 100; ++i) {
     std::vector<Vec3> points;
@@ -74,7 +74,7 @@ Scene plate_across_x(double x_m, double half_m) {
   return parametric(1, 1, [=](double u, double v) { return Vec3(x_m, half_m * (2 * u - 1), half_m * (2 * v - 1)); });
 }
 
-TEST(ObjectView, TheCameraThatSeesLooksFromTheWantedSide) {
+TEST(ObjectView, TheCameraThatSeesLooksFromTheRequestedSide) {
   const std::vector<Vec3> shown = {Vec3(-0.1, -0.1, -0.1), Vec3(0.1, 0.1, 0.1)};
   const RayScene nothing{Scene{}};
   for (const Vec3& side : {Vec3(Vec3::UnitX()), Vec3(-Vec3::UnitY()), Vec3(0.6, -0.8, 0)}) {
@@ -87,7 +87,7 @@ TEST(ObjectView, TheCameraThatSeesLooksFromTheWantedSide) {
   }
 }
 
-TEST(ObjectView, TheCameraThatSeesGoesRoundWhatStandsInTheWay) {
+TEST(ObjectView, TheCameraThatSeesAvoidsObstacles) {
   const std::vector<Vec3> shown = {Vec3(-1, -1, -1), Vec3(1, 1, 1)};
   const std::vector<Sight> wanted = {{Vec3(0, 0, 0)}};
   // A shown plate hides the middle from half of the sides. Walls nearer than anything shown do not, as they are left

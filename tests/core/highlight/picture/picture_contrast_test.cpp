@@ -32,7 +32,7 @@ PictureContrast contrast_at_middle(const Picture& picture, double scale_m) {
 }
 
 // Half of the pixels a, half b: deviation (a - b)/2 over the mean (a + b)/2.
-TEST(PictureContrast, IsTheDeviationOverTheMeanWhateverTheExposure) {
+TEST(PictureContrast, IsTheDeviationOverTheMeanAtAnyExposure) {
   for (const double exposure : {1e-3, 1.0, 1e5}) {
     const auto contrast = contrast_at_middle(painted([&](int x, int) { return exposure * (x < 40 ? 3 : 1); }), 0.1);
     EXPECT_EQ(contrast.seen, 1u);
@@ -44,13 +44,13 @@ TEST(PictureContrast, IsTheDeviationOverTheMeanWhateverTheExposure) {
 }
 
 // 40 px a metre: 5 cm are 2 px to each side, and the edge is 6 px away.
-TEST(PictureContrast, LooksAsFarAsTheScale) {
+TEST(PictureContrast, CoversPixelsWithinTheScale) {
   const Picture far_edge = painted([](int x, int) { return x < 34 ? 3 : 1; });
   EXPECT_NEAR(contrast_at_middle(far_edge, 0.05).local_contrast, 0, 1e-6);
   EXPECT_GT(contrast_at_middle(far_edge, 0.3).local_contrast, 0.2);
 }
 
-TEST(PictureContrast, CountsOnlyWhatTheCameraSees) {
+TEST(PictureContrast, CountsOnlyPointsThatTheCameraSees) {
   const RayScene plane(ceiling(5, 0)), covered(joined(ceiling(5, 0), ceiling(0.2, 1)));
   const Picture halves = painted([](int x, int) { return x < 40 ? 3 : 1; });
   const std::vector<OrientedPoint> points = {kMiddleOfPicture,

@@ -10,7 +10,7 @@ namespace {
 
 using namespace surface_picture_fixture;
 
-TEST(SurfacePicture, TheSameForAnyNumberOfThreads) {
+TEST(SurfacePicture, IsTheSameForAnyNumberOfThreads) {
   const auto one = picture_of(uv_sphere(0.6, 40), 2, 0, 1).resolved(),
              three = picture_of(uv_sphere(0.6, 40), 2, 0, 3).resolved();
   EXPECT_EQ(one.rgb, three.rgb);

@@ -30,7 +30,7 @@ double red_px(const ColourPicture& picture) {
   return sum;
 }
 
-TEST(SurfacePicture, AnEdgeIsAsGreyAsItCoversThePixel) {
+TEST(SurfacePicture, AnEdgePixelIsGreyByItsCoverage) {
   // The plate ends 30.5 pixels left of the middle.
   const ColourPicture picture = picture_of(plate_across_y(-0.305, 0.9), 2).resolved();
   EXPECT_EQ(picture.width_px, 200);
@@ -42,7 +42,7 @@ TEST(SurfacePicture, AnEdgeIsAsGreyAsItCoversThePixel) {
   }
 }
 
-TEST(SurfacePicture, WhatIsNearerThanTheCutIsLeftAway) {
+TEST(SurfacePicture, OmitsSurfacesNearerThanTheCut) {
   const Scene two =
       joined(plate_across_y(-0.5, 0.5), transformed(plate_across_y(-0.5, 0.5), 1, Mat3::Identity(), Vec3(0, -1, 0)));
   SurfacePicture picture(before_the_plate(), 1, 1.2, kWhitePaper);
@@ -59,7 +59,7 @@ TEST(SurfacePicture, WhatIsNearerThanTheCutIsLeftAway) {
   EXPECT_FALSE(picture.shows(Vec3(0, -1, 0), 0.001));
 }
 
-TEST(SurfacePicture, ADiscIsSeenBeforeASurfaceAndHiddenBehindIt) {
+TEST(SurfacePicture, ADiscShowsInFrontOfASurfaceAndIsHiddenBehindIt) {
   const Scene plate = plate_across_y(-0.9, 0.9);
   const auto red_of = [&](const Disc& disc) {
     SurfacePicture picture = picture_of(plate, 4);
@@ -78,7 +78,7 @@ TEST(SurfacePicture, ADiscIsSeenBeforeASurfaceAndHiddenBehindIt) {
   EXPECT_NEAR(red_of({Vec3(0, -1, 0), Vec3::Zero(), 0.1, 0, kRedDisc, 1}), kPi * 400, 10);
 }
 
-TEST(SurfacePicture, ALiftedDiscIsNotCutByWhatItLiesOn) {
+TEST(SurfacePicture, ALiftedDiscIsNotCutByItsSurface) {
   const Disc on_it{Vec3(0, 0.001, 0), Vec3::UnitY(), 0.1, 0, kRedDisc, 1};
   Disc lifted = on_it;
   lifted.lift_m = 0.01;
@@ -91,7 +91,7 @@ TEST(SurfacePicture, ALiftedDiscIsNotCutByWhatItLiesOn) {
   EXPECT_NEAR(red_px(picture.resolved()), kPi * 100, 5);
 }
 
-TEST(SurfacePicture, OfTwoDiscsTheNearerCovers) {
+TEST(SurfacePicture, TheNearerOfTwoDiscsCoversTheOther) {
   const std::vector<Disc> discs = {{Vec3(0, -1, 0), Vec3::UnitY(), 0.05, 0, Vec3f(0, 0, 1), 1},
                                    {Vec3(0, -0.5, 0), Vec3::UnitY(), 0.2, 0, kRedDisc, 1}};
   SurfacePicture picture = picture_of(Scene{}, 1);
@@ -101,7 +101,7 @@ TEST(SurfacePicture, OfTwoDiscsTheNearerCovers) {
   EXPECT_EQ(pixel(drawn, 0.2, 0), kRedDisc);
 }
 
-TEST(SurfacePicture, ALineIsHiddenFromWhereItPassesASurface) {
+TEST(SurfacePicture, ALineIsHiddenBehindTheSurfaceItCrosses) {
   // It passes through the plate at x = 0, seen at the middle of the picture.
   const DrawnLine line{Vec3(-0.4, -0.5, 0), Vec3(0.4, 0.5, 0), 4, kRedDisc, 0, 0};
   SurfacePicture picture = picture_of(plate_across_y(-0.9, 0.9), 2);
@@ -116,7 +116,7 @@ TEST(SurfacePicture, ALineIsHiddenFromWhereItPassesASurface) {
   EXPECT_FLOAT_EQ(pixel(picture.resolved(), 0.1, 0).x(), 0.75f);
 }
 
-TEST(SurfacePicture, ALineFromBehindTheEyeIsCutOff) {
+TEST(SurfacePicture, ALineFromBehindTheEyeIsClipped) {
   SurfacePicture picture = picture_of(Scene{}, 1);
   picture.draw(DrawnLine{Vec3(0.1, -5, 0), Vec3(0.1, 3, 0), 3, kRedDisc, 0, 0});
   EXPECT_EQ(pixel(picture.resolved(), 0.05, 0), kRedDisc);  // at 3 m of 5 m: 0.04 m in the plane

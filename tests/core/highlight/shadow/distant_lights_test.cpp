@@ -28,7 +28,7 @@ DirectionHistogram votes_around(const std::vector<std::pair<Vec3, std::uint32_t>
   return h;
 }
 
-TEST(DistantLights, StandWhereVotesGather) {
+TEST(DistantLights, LieWhereVotesGather) {
   const std::vector<std::pair<Vec3, std::uint32_t>> lobes = {
       {Vec3(1, 0, 0.5).normalized(), 1000}, {Vec3(-1, 0.3, 0.2).normalized(), 900}, {Vec3(0, -1, 1).normalized(), 700}};
   const auto lights = distant_lights(votes_around(lobes), {3, 0.33});
@@ -43,7 +43,7 @@ TEST(DistantLights, StandWhereVotesGather) {
   EXPECT_NEAR((*lights)[0].share + (*lights)[1].share + (*lights)[2].share, 1, 1e-12);
 }
 
-TEST(DistantLights, OneIsTheBinWithMostVotesAndWeakLobesAreCut) {
+TEST(DistantLights, ASingleLightTakesTheFullestBinAndWeakLobesAreCut) {
   const Vec3 strong = Vec3(0.2, 0.9, 0.4).normalized();
   const auto histogram = votes_around({{strong, 1000}, {Vec3(0, 0, -1), 300}});
   const auto one = distant_lights(histogram, {1, 0.33});
@@ -56,7 +56,7 @@ TEST(DistantLights, OneIsTheBinWithMostVotesAndWeakLobesAreCut) {
   EXPECT_LT(std::min((*kept)[0].direction.dot(strong), (*kept)[1].direction.dot(strong)), 0);
 }
 
-TEST(DistantLights, AreFewerWhereFewBinsAreVotedFor) {
+TEST(DistantLights, AreFewerWhereFewBinsHaveVotes) {
   auto histogram = votes_around({});
   EXPECT_FALSE(distant_lights(histogram, {}));  // nothing to bring out: an error, not a guess
   histogram.votes[5] = 3;
@@ -107,7 +107,7 @@ TEST(DistantLights, RakeAcrossTheRelief) {
   EXPECT_GT(contrast(c.lights[0].direction), 2 * contrast(Vec3::UnitZ()) + 0.1);
 }
 
-TEST(DistantLights, BringOutMoreThanLightsThatCoverMost) {
+TEST(DistantLights, BringOutMoreReliefThanCoverageLights) {
   const Scene scene = make_terrain(100, 80);
   const TargetRays target(scene);
   const Chosen c = chosen(scene, target, 300, 2);
@@ -124,7 +124,7 @@ TEST(DistantLights, BringOutMoreThanLightsThatCoverMost) {
   EXPECT_GT(a.local_contrast_lx, b.local_contrast_lx);
 }
 
-TEST(CoverageLights, OfASphereLightHalfEach) {
+TEST(CoverageLights, LightHalfOfASphereEach) {
   const Scene scene = uv_sphere(1, 30);
   const auto surface = make_target_surface(scene);
   const auto lights = coverage_lights(*surface, TargetRays(scene), DirectionBins(8), 5, 0, 0);
@@ -138,7 +138,7 @@ TEST(CoverageLights, OfASphereLightHalfEach) {
   EXPECT_TRUE(coverage_lights(*make_target_surface(Scene{}), TargetRays(Scene{}), DirectionBins(2), 1, 0, 0).empty());
 }
 
-TEST(ReliefContrast, OfAStepIsWhatItsGeometrySays) {
+TEST(ReliefContrast, OfAStepMatchesItsGeometry) {
   // A level floor, a wall at x = 0 from z = 0 to 1, and an upper floor. Light from -X at 45° leaves x in 0…-1 lit;
   // light from +X shades the lower floor up to x = -1.
   const Scene scene = parametric(3, 1, [](double u, double v) {

@@ -24,7 +24,7 @@ Scene ring_wall() {
   });
 }
 
-TEST(ShadowEdges, OfARingWallAreAtItsHorizon) {
+TEST(ShadowEdges, LieAtTheHorizonOfARingWall) {
   const TargetRays target(ring_wall());
   const std::vector<OrientedPoint> points = {{Vec3::Zero(), Vec3::UnitZ()}};
   for (const int step : {1, 2, 4, 8}) {
@@ -35,7 +35,7 @@ TEST(ShadowEdges, OfARingWallAreAtItsHorizon) {
   }
 }
 
-TEST(ShadowEdges, OfAPlateAboveAreBelowAndAboveIt) {
+TEST(ShadowEdges, LieBelowAndAboveAPlate) {
   // A square plate of 0.4 × 0.4 at x = 1, facing the point: edges on both sides of it, only within its azimuths.
   Scene plate;
   plate.vertices_m = {{1, -0.2f, 0.4f}, {1, 0.2f, 0.4f}, {1, 0.2f, 0.8f}, {1, -0.2f, 0.8f}};
@@ -59,7 +59,7 @@ TEST(ShadowEdges, OfAPlateAboveAreBelowAndAboveIt) {
   EXPECT_LT(edges_with(target, points, 4).rays, 2500u);
 }
 
-TEST(ShadowEdges, TwoVotesWhereTheSkyOpensForOneStep) {
+TEST(ShadowEdges, AnOpeningOfOneStepGivesTwoEdges) {
   HorizonMask blocked;
   for (int j = 0; j < kScanElevations; ++j) blocked.set(7, j, j < 10 || (j > 10 && j < 20));
   std::vector<ShadowEdge> edges;
@@ -70,7 +70,7 @@ TEST(ShadowEdges, TwoVotesWhereTheSkyOpensForOneStep) {
 /// Edges are ordered by azimuth, then elevation.
 int in_order(const ShadowEdge& edge) { return edge.azimuth * kScanElevations + edge.elevation; }
 
-TEST(ShadowEdges, OfTheSearchAreThoseOfEveryRay) {
+TEST(ShadowEdges, SearchMatchesTracingEveryRay) {
   for (const Scene& scene : {make_carved_relief(0.015), make_terrain(100, 60), torus(1, 0.7, 60, 40)}) {
     const Bench bench = with_interest_points(scene, 60);
     ASSERT_GT(bench.points.size(), 20u);
@@ -89,7 +89,7 @@ TEST(ShadowEdges, OfTheSearchAreThoseOfEveryRay) {
   }
 }
 
-TEST(ShadowEdges, OnePinholeThatIsMetTellsOfOthers) {
+TEST(ShadowEdges, OneDetectedPinholeLeadsToTheOthers) {
   // A screen of 200 × 200 above the point with a hole in every tenth place, smaller than the gaps between first rays.
   Scene screen;
   const int split = 200;
@@ -129,7 +129,7 @@ TEST(ShadowEdges, AreTheSameAtAnySizeAndPlace) {
   }
 }
 
-TEST(ShadowEdges, AreNotThereWithoutRelief) {
+TEST(ShadowEdges, AreAbsentWithoutRelief) {
   const std::vector<OrientedPoint> point = {{Vec3(0, 0, 1), Vec3::UnitZ()}};
   EXPECT_TRUE(edges_with(TargetRays(uv_sphere(1, 40)), point, 4).edges.empty());
   EXPECT_TRUE(edges_with(TargetRays(Scene{}), point, 4).edges.empty());
@@ -144,7 +144,7 @@ TEST(ShadowEdges, AreNotThereWithoutRelief) {
   EXPECT_TRUE(edges_with(TargetRays(ring_wall()), {}, 4).edges.empty());
 }
 
-TEST(ShadowEdges, RefuseWhatMakesNoSense) {
+TEST(ShadowEdges, RefuseInvalidOptions) {
   const TargetRays target(ring_wall());
   ShadowEdgeOptions options;
   options.step = 0;
@@ -161,7 +161,7 @@ TEST(ShadowEdges, RefuseWhatMakesNoSense) {
   EXPECT_FALSE(find_shadow_edges(target, {}, options));
 }
 
-TEST(ShadowEdges, ReachOnlyWhereSurroundingsLetThem) {
+TEST(ShadowEdges, ReachOnlyWhereSurroundingsAllow) {
   const TargetRays target(ring_wall());
   const std::vector<OrientedPoint> points = {{Vec3::Zero(), Vec3::UnitZ()}};
   const ShadowEdges edges = edges_with(target, points, 4);
@@ -180,7 +180,7 @@ TEST(ShadowEdges, ReachOnlyWhereSurroundingsLetThem) {
   EXPECT_EQ(reachable_edges(edges, points, RayScene(Scene{}), infinite, 0).edges, edges.edges);
 }
 
-TEST(DirectionBins, AreOfEqualAreaAndHoldTheirMiddles) {
+TEST(DirectionBins, HaveEqualAreaAndContainTheirCentres) {
   for (const int side : {1, 2, 5, 16}) {
     const DirectionBins bins(side);
     for (std::uint32_t b = 0; b < bins.count(); ++b) {

@@ -10,7 +10,7 @@ namespace {
 
 using namespace curvature_fixture;
 
-TEST(Curvature, OfAFineMeshIsThatOfItsMergedSamples) {
+TEST(Curvature, OfAFineMeshMatchesThatOfItsMergedSamples) {
   // 0.3 m on a sphere of 200 rings: 300 vertices at the equator, more at the poles.
   const Errors e = errors_against(measured(uv_sphere(1, 200), 0.3), kEverywhereOne);
   EXPECT_EQ(e.unknown, 0u);

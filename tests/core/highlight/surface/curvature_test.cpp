@@ -24,12 +24,12 @@ TEST(Curvature, OfASphereIsOneOverItsRadiusAtAnyResolutionAndScale) {
   }
 }
 
-TEST(Curvature, OfASphereIsOverByTheFourthOrderAsTheHeaderSays) {
+TEST(Curvature, OfASphereIsBiasedByTheStatedFourthOrderTerm) {
   const Errors e = errors_against(measured(uv_sphere(1, 100), 0.3), kEverywhereOne);
   EXPECT_NEAR(e.mean_rms / (0.3 * 0.3), 0.17, 0.02);
 }
 
-TEST(Curvature, OfACylinderAndItsDirections) {
+TEST(Curvature, OfACylinderMatchesItsClosedFormWithDirections) {
   for (const int around : {60, 120}) {
     const Measured m = measured(cylinder(1, 2, around, around / 3), 0.25);
     const Errors e = errors_against(m, [](const Vec3& p) -> std::optional<Truth> {
@@ -43,7 +43,7 @@ TEST(Curvature, OfACylinderAndItsDirections) {
   }
 }
 
-TEST(Curvature, AtTheOpenRimOfACylinderIsStillKnown) {
+TEST(Curvature, IsKnownAtTheOpenRimOfACylinder) {
   const Measured m = measured(cylinder(1, 2, 120, 40), 0.25);
   const Errors e = errors_against(m, [](const Vec3& p) -> std::optional<Truth> {
     if (std::abs(p.z()) < 0.99) return std::nullopt;
@@ -59,7 +59,7 @@ std::optional<Truth> torus_truth(const Vec3& p) {
   return Truth{2.5, (out - 1) / 0.4 / out};
 }
 
-TEST(Curvature, OfATorusOutsideAndInTheHole) {
+TEST(Curvature, OfATorusIsRightOutsideAndInTheHole) {
   for (const int across : {40, 90}) {
     const Errors e = errors_against(measured(torus(1, 0.4, 5 * across / 2, across), 0.12), torus_truth);
     EXPECT_EQ(e.unknown, 0u);
@@ -82,7 +82,7 @@ TEST(Curvature, OfASaddleHasBothSigns) {
   EXPECT_LT(e.principal_rms, 0.01);
 }
 
-TEST(Curvature, InwardNormalsTurnItsSign) {
+TEST(Curvature, InwardNormalsFlipItsSign) {
   Scene inside = uv_sphere(1, 60);
   for (auto& t : inside.triangles) std::swap(t[1], t[2]);
   const Errors e = errors_against(measured(inside, 0.2), [](const Vec3&) { return std::optional(Truth{-1, -1}); });
@@ -90,7 +90,7 @@ TEST(Curvature, InwardNormalsTurnItsSign) {
   EXPECT_LT(e.mean_worst, 0.02);
 }
 
-TEST(Curvature, UnderNoiseIsOffAsItsStatedErrorSays) {
+TEST(Curvature, ErrsUnderNoiseAsItsStatedErrorPredicts) {
   // 0.1 % of the size, 2 m: σ = 2 mm.
   const Measured m = measured(noisy(uv_sphere(1, 120), 0.002, 3), 0.25);
   const Errors e = errors_against(m, kEverywhereOne);
@@ -110,7 +110,7 @@ TEST(Curvature, UnderNoiseIsOffAsItsStatedErrorSays) {
   EXPECT_LT(std::sqrt(square / count), 1.5);
 }
 
-TEST(Curvature, OfANoisyTorus) {
+TEST(Curvature, OfANoisyTorusIsCloseToItsClosedForm) {
   // Size 2.8 m: σ = 2.8 mm; scale 0.2 m, half the tube's radius, whose own bias is 0.17 · 0.25 of 2.5 / m.
   const Errors e = errors_against(measured(noisy(torus(1, 0.4, 200, 80), 0.0028, 5), 0.2), torus_truth);
   EXPECT_EQ(e.unknown, 0u);
@@ -134,7 +134,7 @@ TEST(Curvature, TurnsAndScalesWithTheMesh) {
   }
 }
 
-TEST(Curvature, DoesNotDependOnTheOrderOfTheFile) {
+TEST(Curvature, DoesNotDependOnTheElementOrderOfTheFile) {
   const Scene scene = noisy(torus(1, 0.4, 100, 40), 0.002, 1);
   const Measured one = measured(scene, 0.15), two = measured(shuffled(scene, 9), 0.15);
   ASSERT_EQ(one.curvature.size(), two.curvature.size());
@@ -149,7 +149,7 @@ TEST(Curvature, DoesNotDependOnTheOrderOfTheFile) {
   }
 }
 
-TEST(Curvature, SurvivesWhatScannersProduce) {
+TEST(Curvature, ToleratesScannerArtefacts) {
   // Slivers without area, a fin where three sheets meet, a stray vertex, an island of one triangle; half the surface is
   // missing.
   Scene scene = noisy(uv_sphere(1, 60), 0.001, 4);
@@ -189,14 +189,14 @@ TEST(Curvature, KeepsTheTwoSidesOfAThinSheetApart) {
   EXPECT_LT(e.mean_worst, 0.02);
 }
 
-TEST(Curvature, LongFacetsCountByTheirArea) {
+TEST(Curvature, WeighsLongFacetsByTheirArea) {
   // A cylinder of two rings: the neighbours of the rim are only facets.
   const Errors e = errors_against(measured(cylinder(1, 2, 120, 1), 0.3), [](const Vec3&) { return Truth{1, 0}; });
   EXPECT_EQ(e.unknown, 0u);
   EXPECT_LT(e.mean_worst, 0.05);
 }
 
-TEST(Curvature, OfNothingIsUnknownOrRefused) {
+TEST(Curvature, OfAnEmptyOrTinyMeshIsUnknown) {
   const Measured empty = measured(Scene{}, 0.1);
   EXPECT_TRUE(empty.curvature.empty());
   Scene points;

@@ -13,7 +13,7 @@ namespace {
 
 using namespace even_surface_fixture;
 
-TEST(EvenSurface, TurnsWithItsObjectButForThePlacesTaken) {
+TEST(EvenSurface, TurnsWithItsObjectExceptForTheSampledPlaces) {
   const Mat3 rotation = Eigen::AngleAxisd(0.7, Vec3(0.3, -0.5, 0.8).normalized()).toRotationMatrix();
   const Scene relief = make_carved_relief(0.01);
   const TargetSurface mesh = mesh_of(relief), mesh_turned = mesh_of(turned(relief, rotation));

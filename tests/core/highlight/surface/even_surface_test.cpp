@@ -14,7 +14,7 @@ namespace {
 
 using namespace even_surface_fixture;
 
-TEST(SizeOfASurface, IsTheDiagonalOfARectangleHoweverItIsMeshedAndTurned) {
+TEST(SizeOfASurface, IsTheDiagonalOfARectangleForAnyMeshAndRotation) {
   const Mat3 rotation = Eigen::AngleAxisd(1.1, Vec3(0.3, -0.5, 0.8).normalized()).toRotationMatrix();
   for (const int split : {1, 7}) {
     const Scene flat = parametric(split, 2 * split, [](double u, double v) { return Vec3(5 + 3 * u, 4 * v, 1); });
@@ -25,7 +25,7 @@ TEST(SizeOfASurface, IsTheDiagonalOfARectangleHoweverItIsMeshedAndTurned) {
   EXPECT_EQ(mesh_of(Scene{}).size_m(), 0);
 }
 
-TEST(EvenSurface, HasPointsAllOverASphereWithTheirShareOfIt) {
+TEST(EvenSurface, CoversASphereEvenlyWithPoints) {
   const double radius_m = 2, scale_m = 0.3;
   const TargetSurface mesh = mesh_of(uv_sphere(radius_m, 100));
   const EvenSurface even = even_of(mesh, scale_m);
@@ -65,7 +65,7 @@ TEST(EvenSurface, ComparesEachPlaceWithOthersAllAroundIt) {
   }
 }
 
-TEST(EvenSurface, OfACoarseMeshIsThatOfAFineOne) {
+TEST(EvenSurface, OfACoarseMeshMatchesThatOfAFineOne) {
   const double scale_m = 0.2;
   const auto plane = [](int split) {
     return parametric(split, split, [](double u, double v) { return Vec3(2 * u, 3 * v, 0); });
@@ -97,7 +97,7 @@ TEST(EvenSurface, KeepsTheSidesOfASheetApart) {
   EXPECT_NEAR(back_m2, 1, 1e-3);
 }
 
-TEST(EvenSurface, TakesAnyMeshAndRefusesScalesThatAreNone) {
+TEST(EvenSurface, AcceptsAnyMeshAndRefusesInvalidScales) {
   for (const double bad : {0.0, -1.0, std::numeric_limits<double>::infinity(), std::nan("")})
     EXPECT_FALSE(even_surface(mesh_of(uv_sphere(1, 10)), {{}, bad})) << bad;
   EXPECT_TRUE(even_of(mesh_of(Scene{}), 1).surface.points_m.empty());

@@ -49,7 +49,7 @@ std::vector<std::uint32_t> by_all_pairs(const std::vector<OrientedPoint>& points
   return cluster;
 }
 
-TEST(FeatureClusters, AreThoseOfAllPairsWhereReachIsShort) {
+TEST(FeatureClusters, MatchAllPairsWhereReachIsShort) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     Random random(seed);
     std::vector<OrientedPoint> points;
@@ -66,7 +66,7 @@ TEST(FeatureClusters, AreThoseOfAllPairsWhereReachIsShort) {
   }
 }
 
-TEST(FeatureClusters, PartWhereASurfaceTurnsByMoreThanTheAngle) {
+TEST(FeatureClusters, SplitWhereASurfaceTurnsByMoreThanTheAngle) {
   // Two strips that meet at a right angle, and one level with the first but 1 m away.
   std::vector<OrientedPoint> points;
   for (int i = 0; i < 50; ++i) points.push_back({{0.01 * i, 0, 0}, {0, 0, 1}});
@@ -87,7 +87,7 @@ TEST(FeatureClusters, DoNotCreepRoundABend) {
   EXPECT_GE(clustered(points, 0.05).sizes.size(), 3u);
 }
 
-TEST(FeatureClusters, OfNothingOrNonsense) {
+TEST(FeatureClusters, HandleEmptyInputAndRefuseInvalidInput) {
   EXPECT_TRUE(clustered({}, 1).sizes.empty());
   EXPECT_EQ(clustered({{Vec3::Zero(), Vec3::UnitZ()}}, 1).sizes, std::vector<std::uint32_t>{1});
   // A hundred points at one place, and some without a normal, which join no cluster.

@@ -49,7 +49,7 @@ TEST(InterestPoints, LieInTheGroove) {
   EXPECT_TRUE(std::is_sorted(points.begin(), points.end()));
 }
 
-TEST(InterestPoints, ByThresholdAreThoseBelowIt) {
+TEST(InterestPoints, LieBelowACurvatureThreshold) {
   const Prepared p = prepared(grooved_plate(), 0.1);
   InterestOptions options;
   options.mean_curvature_below_per_m = -2;
@@ -74,7 +74,7 @@ TEST(InterestPoints, AreFoundAtTheSamePlacesAtAnySize) {
   }
 }
 
-TEST(InterestPoints, AreNotThereWhereNothingIsRecessed) {
+TEST(InterestPoints, AreAbsentWhereNothingIsRecessed) {
   for (const Scene& scene : {uv_sphere(1, 60), saddle(1e6, 1, 40), noisy(saddle(1e6, 1, 80), 0.002, 1), Scene{}}) {
     const Prepared p = prepared(scene, 0.2);
     InterestOptions options;
@@ -84,7 +84,7 @@ TEST(InterestPoints, AreNotThereWhereNothingIsRecessed) {
   }
 }
 
-TEST(InterestPoints, ThinnedOutStaySpreadOverTheFeature) {
+TEST(InterestPoints, StaySpreadOverTheFeatureWhenThinnedOut) {
   const Prepared p = prepared(grooved_plate(), 0.1);
   InterestOptions options;
   options.wanted_share = 0.03;
@@ -100,7 +100,7 @@ TEST(InterestPoints, ThinnedOutStaySpreadOverTheFeature) {
   for (const int count : octants) EXPECT_GE(count, 3);
 }
 
-TEST(InterestPoints, RefuseWhatMakesNoSense) {
+TEST(InterestPoints, RefuseInvalidOptions) {
   const Prepared p = prepared(uv_sphere(1, 10), 0.5);
   InterestOptions options;
   options.mean_curvature_below_per_m = 1;
@@ -111,7 +111,7 @@ TEST(InterestPoints, RefuseWhatMakesNoSense) {
   EXPECT_FALSE(interest_points(p.surface, {}, {}));
 }
 
-TEST(ReliefTargets, AreWhatTheirHeaderSays) {
+TEST(ReliefTargets, MatchTheirDescription) {
   const Scene relief = make_carved_relief(0.01);
   const auto surface = make_target_surface(relief);
   ASSERT_TRUE(surface);

@@ -32,7 +32,7 @@ Checked<Rig> written_and_read(const ImportedRig& imported, const std::string& na
   return rig;
 }
 
-TEST(Mvr, SevenFixturesStandWhereTheFileSaysAndAsItTurnsThem) {
+TEST(Mvr, SevenFixturesStandAndTurnAsTheFileStates) {
   const Checked<MvrFile> mvr = read_mvr(bytes_of(kMvr / "7-fixtures-sample.mvr"), "7.mvr");
   ASSERT_TRUE(mvr) << mvr.error().front().text();
   ASSERT_EQ(mvr->scene.fixtures.size(), 7u);
@@ -79,7 +79,7 @@ TEST(Mvr, TheParHasItsGdtfsBeam) {
 }
 
 // The matrix in the examples of the MVR specification: rows are the directions of x, y and z, then the origin in mm.
-TEST(Mvr, TheMatrixOfTheSpecificationsExampleStandsAndTurnsAsItsRowsSay) {
+TEST(Mvr, TheSpecificationsMatrixGivesPlaceAndRotationByItsRows) {
   const Checked<MvrScene> scene = parse_mvr_scene(
       R"(<GeneralSceneDescription verMajor="1" verMinor="6"><Scene><Layers><Layer name="l"><ChildList><Fixture name="a">)"
       "<Matrix>{0.158127,-0.987419,0.000000}{0.987419,0.158127,0.000000}{0.000000,0.000000,1.000000}"
@@ -134,7 +134,7 @@ TEST(Mvr, GroupsMultiplyFocusPointsAimAndAddressesCountFromOne) {
   EXPECT_NE(imported.rig_toml.find("FILL IN: \"a\": the DMX slots are not known"), std::string::npos);
 }
 
-TEST(Mvr, FixturesThatShareSlotsAreMovedApartAndToldOf) {
+TEST(Mvr, FixturesThatShareSlotsAreMovedApartAndReported) {
   const std::string patch = "<Addresses><Address>7</Address></Addresses>";
   const auto scene = parse_mvr_scene(scene_of(fixture_of("a", patch) + fixture_of("a", patch)), "x");
   ASSERT_TRUE(scene);
@@ -146,7 +146,7 @@ TEST(Mvr, FixturesThatShareSlotsAreMovedApartAndToldOf) {
   EXPECT_NE(imported.rig_toml.find("are taken"), std::string::npos);
 }
 
-TEST(Mvr, MountAnglesMakeUpAnyRotation) {
+TEST(Mvr, MountAnglesExpressAnyRotation) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> angle(-180, 180);
   const auto rotation_of = [](const Vec3& deg) {
@@ -181,7 +181,7 @@ TEST(Mvr, HostileScenesAreRefusedWithAReason) {
     EXPECT_FALSE(read_mvr(whole.substr(0, length), "x"));
 }
 
-TEST(Mvr, NamesThatWouldBreakOutOfTextOrFolderDoNot) {
+TEST(Mvr, NamesCannotBreakOutOfTextOrFolder) {
   MvrScene scene;
   scene.fixtures.push_back({"a\"]\\ \n[x]", "../../etc/pass\"wd", "m\"", {}, {}, {}, false, false, 1});
   scene.fixtures[0].name = made_plain(scene.fixtures[0].name);

@@ -76,7 +76,7 @@ TEST(DimmerChoice, ASwitchIsOffAtLevel0AndOnAtLevel1) {
   EXPECT_TRUE(pack.told("it is switched"));
 }
 
-TEST(DimmerChoice, AFixtureWhoseModeIsOnOrOffIsSwitchedWithoutBeingAsked) {
+TEST(DimmerChoice, AnOnOffModeMakesAFixtureSwitched) {
   const auto folder = std::filesystem::path(testing::TempDir()) / "luxrig_switch_mode";
   std::filesystem::create_directories(folder);
   std::ofstream(folder / "switch.json") << ofl_of(R"("Switch": {"capabilities": [
@@ -139,7 +139,7 @@ const char* const kTwoDimmers = R"("Color Presets Dimmer": {"defaultValue": 0, "
     "Dimmer": {"defaultValue": 7, "capability": {"type": "Intensity"}})";
 
 // As elation/platinum-seven: the first channel was taken, which only dims built-in colours, so no limit held.
-TEST(DimmerChoice, OfTwoThatCouldBeItNeitherIsTakenAndBothAreNamed) {
+TEST(DimmerChoice, TwoPossibleDimmersAreRefusedAndNamed) {
   const Fitted seven = fit_ofl(kTwoDimmers, R"("Color Presets Dimmer", "Dimmer")");
   ASSERT_FALSE(seven.slots);
   EXPECT_NE(seven.problem.find("\"Color Presets Dimmer\" (slot 1) and \"Dimmer\" (slot 2)"), std::string::npos)
@@ -155,7 +155,7 @@ TEST(DimmerChoice, OfTwoThatCouldBeItNeitherIsTakenAndBothAreNamed) {
 }
 
 // As in 84 modes of the Open Fixture Library.
-TEST(DimmerChoice, HueAndSaturationAreNoneThoughTheirFileCallsThemIntensities) {
+TEST(DimmerChoice, HueAndSaturationAreNotDimmersDespiteTheirIntensityType) {
   const Fitted lamp = fit_ofl(R"("Hue 1": {"defaultValue": 3, "capability": {"type": "Intensity"}},
       "Saturation 1": {"capability": {"type": "Intensity"}}, "Intensity 1": {"capability": {"type": "Intensity"}})",
                               R"("Hue 1", "Saturation 1", "Intensity 1")");
@@ -166,7 +166,7 @@ TEST(DimmerChoice, HueAndSaturationAreNoneThoughTheirFileCallsThemIntensities) {
   EXPECT_EQ(lamp.sent(2, 0), 0);
 }
 
-TEST(DimmerChoice, TheRigFileChoosesAndTheOtherStaysAtItsDefault) {
+TEST(DimmerChoice, TheRigFileChoosesAndTheOtherKeepsItsDefault) {
   const Fitted dimmer = fit_ofl(kTwoDimmers, R"("Color Presets Dimmer", "Dimmer")", "Dimmer");
   ASSERT_TRUE(dimmer.slots) << dimmer.problem;
   EXPECT_EQ(dimmer.sent(0, 1), 0);
@@ -184,7 +184,7 @@ TEST(DimmerChoice, TheRigFileChoosesAndTheOtherStaysAtItsDefault) {
 }
 
 // As Capture writes it for a fixture without a file: all slots but the first were held at 255.
-TEST(DimmerChoice, AStandInWhoseEverySlotIsADimmerIsRefusedWithTheReason) {
+TEST(DimmerChoice, APlaceholderWhoseEverySlotIsADimmerIsRefused) {
   std::string channels;
   for (int i = 1; i <= 12; ++i) {
     const std::string attribute = "Dimmer" + std::to_string(i);
@@ -198,7 +198,7 @@ TEST(DimmerChoice, AStandInWhoseEverySlotIsADimmerIsRefusedWithTheReason) {
   EXPECT_NE(stand_in.problem.find("get the maker's GDTF file"), std::string::npos) << stand_in.problem;
 }
 
-TEST(DimmerChoice, ALevelRunsThroughTheDimmersOwnRangeAndOverItsLeastLight) {
+TEST(DimmerChoice, LevelsUseTheDimmersOwnRangeAboveItsMinimumLight) {
   // Dark up to 15, then from a tenth of the light up.
   const Fitted lamp = fit_ofl(R"("D": {"capabilities": [
       {"dmxRange": [0, 15], "type": "Intensity", "brightness": "off"},
@@ -213,7 +213,7 @@ TEST(DimmerChoice, ALevelRunsThroughTheDimmersOwnRangeAndOverItsLeastLight) {
   EXPECT_EQ(lamp.sent(0, 1), 215);
 }
 
-TEST(DimmerChoice, ADimmerThatRunsBackwardsIsBrightAtItsLowEnd) {
+TEST(DimmerChoice, AReversedDimmerIsBrightAtItsLowEnd) {
   const Fitted lamp = fit_ofl(R"("D": {"capability":
       {"type": "Intensity", "brightnessStart": "bright", "brightnessEnd": "off"}})",
                               "\"D\"");
@@ -223,7 +223,7 @@ TEST(DimmerChoice, ADimmerThatRunsBackwardsIsBrightAtItsLowEnd) {
   EXPECT_EQ(lamp.sent(0, 0), 255);
 }
 
-TEST(DimmerChoice, WhereTheDimmerIsNeverDarkAShutterShutsAtLevel0) {
+TEST(DimmerChoice, AShutterClosesAtLevel0WhenTheDimmerIsNeverDark) {
   const std::string dimmer = R"("D": {"capability":
       {"type": "Intensity", "brightnessStart": "dark", "brightnessEnd": "bright"}})";
   const std::string shutter = R"(, "S": {"defaultValue": 40, "capabilities": [
@@ -239,7 +239,7 @@ TEST(DimmerChoice, WhereTheDimmerIsNeverDarkAShutterShutsAtLevel0) {
   EXPECT_TRUE(alone.told("1 % of its light at level 0"));
 }
 
-TEST(DimmerChoice, AStrobeIsHeldWhereItDoesNothing) {
+TEST(DimmerChoice, AStrobeIsHeldAtItsNeutralValue) {
   const Fitted lamp =
       fit_ofl(R"("D": {"capability": {"type": "Intensity"}}, "S": {"defaultValue": 200, "capabilities": [
       {"dmxRange": [0, 9], "type": "NoFunction"},
@@ -249,7 +249,7 @@ TEST(DimmerChoice, AStrobeIsHeldWhereItDoesNothing) {
   EXPECT_EQ(lamp.sent(1, 1), 4);
 }
 
-TEST(DimmerChoice, AZoomStatedInWordsIsToldOf) {
+TEST(DimmerChoice, AZoomStatedOnlyInWordsIsReported) {
   const Fitted lamp = fit_ofl(R"("D": {"capability": {"type": "Intensity"}}, "Zoom": {"defaultValue": 9, "capability":
       {"type": "Zoom", "angleStart": "wide", "angleEnd": "narrow"}})",
                               R"("D", "Zoom")");
@@ -260,7 +260,7 @@ TEST(DimmerChoice, AZoomStatedInWordsIsToldOf) {
                 "to the luminaire's 20° by hand"));
 }
 
-TEST(DimmerChoice, DimmersOfPixelsUnderAMasterAreOpenAndThoseOfSeparatePixelsFollow) {
+TEST(DimmerChoice, PixelDimmersAreFullUnderAMasterAndFollowWithoutOne) {
   const std::string geometry =
       R"(<GDTF DataVersion="1.2"><FixtureType Name="x" Manufacturer="m"><Geometries><Geometry Name="Base">
     <Beam Name="A"/><Beam Name="B"/></Geometry></Geometries><DMXModes><DMXMode Name="m" Geometry="Base"><DMXChannels>)";
@@ -305,7 +305,7 @@ Checked<Rig> par_with(const std::string& keys) {
   return parse_rig(text, "rig.toml", test::source_folder() / "tests/data/fixtures");
 }
 
-TEST(StatedLight, OfAGdtfFileIsUsedWhereTheRigFileHasNoneAndIsTold) {
+TEST(StatedLight, OfAGdtfFileIsUsedAndReportedWhenTheRigFileHasNone) {
   const Checked<Rig> rig = par_with("");
   ASSERT_TRUE(rig) << rig.error().front().text();
   const Luminaire& par = rig->luminaires.at(0);
@@ -319,7 +319,7 @@ TEST(StatedLight, OfAGdtfFileIsUsedWhereTheRigFileHasNoneAndIsTold) {
             "its light from its file: 7000 lm, a beam of 60° in a field of 90°, 6000 K, 216 W");
 }
 
-TEST(StatedLight, TheRigFileHoldsWhereItSaysOtherwiseAndBothAreTold) {
+TEST(StatedLight, OfTheRigFileWinsAndBothAreReported) {
   const Checked<Rig> rig =
       par_with("lumens = 900\nbeam_angle_deg = 20\nfield_angle_deg = 30\ncct_k = 3000\nwatts = 40");
   ASSERT_TRUE(rig) << rig.error().front().text();

@@ -24,7 +24,7 @@ const PersonalityChannel& channel_named(const PersonalityMode& mode, const std::
   return at == mode.channels.end() ? none : *at;
 }
 
-TEST(DmxValue, FillsUpWithItsOwnBytesUnlessShifted) {
+TEST(DmxValue, RepeatsItsBytesToFillUnlessShifted) {
   EXPECT_EQ(dmx_value("255/1", 1), 255u);
   EXPECT_EQ(dmx_value("255/1", 2), 65535u);  // DIN SPEC 15800's own example
   EXPECT_EQ(dmx_value("255/1s", 2), 65280u);
@@ -35,13 +35,13 @@ TEST(DmxValue, FillsUpWithItsOwnBytesUnlessShifted) {
   EXPECT_EQ(dmx_value("4294967295/4", 4), 0xFFFFFFFFu);
 }
 
-TEST(DmxValue, RefusesWhatIsNone) {
+TEST(DmxValue, RefusesInvalidValues) {
   for (const char* text : {"", "255", "255/", "256/1", "-1/1", "1/0", "1/5", "1/1x", "1/1ss", "a/1", "/1", " 1/1",
                            "99999999999999999999/4"})
     EXPECT_FALSE(dmx_value(text, 2)) << text;
 }
 
-TEST(Gdtf, EverySampleLoadsWithTheSlotsThatItsModesTake) {
+TEST(Gdtf, EverySampleLoadsWithTheSlotCountsOfItsModes) {
   const std::vector<std::tuple<const char*, std::string, int>> expected = {
       {"BlenderDMX@LED_PAR_64_RGBW@v0.3.gdtf", "Default", 5},
       {"Clay Paky@Alpha Spot QWO 800.gdtf", "Standard Mode (32 ch)", 32},
@@ -114,7 +114,7 @@ TEST(Gdtf, AVirtualChannelHasNoSlotAndAReferenceShiftsOffsets) {
   EXPECT_EQ(mode.geometries[1].beam->lumens, 1000);
 }
 
-TEST(Gdtf, LampOnMacroTellsTheValueAndHowLong) {
+TEST(Gdtf, LampOnMacroGivesItsValueAndDuration) {
   const Checked<Personality> personality =
       load_personality(kFiles / "Robe_Lighting@Robin_MMX_Blade@2023-07-25__Beam_revision.gdtf");
   ASSERT_TRUE(personality) << personality.error().front().text();
@@ -149,7 +149,7 @@ std::string description(const std::string& channels, const std::string& geometri
          "</DMXChannels></DMXMode></DMXModes></FixtureType></GDTF>";
 }
 
-TEST(Gdtf, ASetWithoutAValueIsLeftOutAndToldOf) {
+TEST(Gdtf, AChannelSetWithoutAValueIsOmittedAndReported) {
   // Line 186 of the LEDBeam: DMXFrom="asdasd0asd/2asdasdasd".
   const Checked<Personality> personality = load_personality(kFiles / "Robe@Robin 100 LEDBeam.gdtf");
   ASSERT_TRUE(personality) << personality.error().front().text();
@@ -221,7 +221,7 @@ TEST(Gdtf, HostileDescriptionsAreRefusedWithAReason) {
   }
 }
 
-TEST(Gdtf, NestingAndReferencesThatMultiplyAreBounded) {
+TEST(Gdtf, NestingAndMultiplyingReferencesAreBounded) {
   std::string deep;
   for (int i = 0; i < 100'000; ++i) deep += "<a>";
   for (int i = 0; i < 100'000; ++i) deep += "</a>";
@@ -243,7 +243,7 @@ TEST(Gdtf, NestingAndReferencesThatMultiplyAreBounded) {
   EXPECT_NE(many.error()[0].what.find("geometries in a mode"), std::string::npos) << many.error()[0].text();
 }
 
-TEST(Gdtf, ACutOrSpoiledFileIsRefusedOrReadButNeverWorse) {
+TEST(Gdtf, TruncatedAndCorruptedFilesAreReadOrRefused) {
   std::ifstream in(kFiles / "Robe ColorWash 2500 AT.gdtf", std::ios::binary);
   const std::string whole((std::istreambuf_iterator<char>(in)), {});
   ASSERT_TRUE(read_gdtf(whole, "x"));
@@ -259,7 +259,7 @@ TEST(Gdtf, ACutOrSpoiledFileIsRefusedOrReadButNeverWorse) {
   }
 }
 
-TEST(Gdtf, AnEntryThatUnpacksWithoutEndIsNotUnpacked) {
+TEST(Gdtf, ADecompressionBombIsRefused) {
   const Checked<Personality> bomb = load_personality(kFiles / "hostile/bomb.gdtf");
   ASSERT_FALSE(bomb);
   EXPECT_NE(bomb.error()[0].what.find("unpacks to more than"), std::string::npos) << bomb.error()[0].text();

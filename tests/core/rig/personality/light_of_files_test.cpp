@@ -196,7 +196,7 @@ void check_ofl_mode(const Json& fixture, const Personality& personality, const P
   EXPECT_TRUE(dark || told_of(slots, "of its light at level 0")) << personality.name << ", " << mode.name;
 }
 
-TEST(LightOfFiles, FullLevelIsTheBrightestThatAnOflFileDescribesAndLevel0IsDark) {
+TEST(LightOfFiles, FullLevelIsTheBrightestOfAnOflFileAndLevel0IsDark) {
   std::size_t fitted = 0, refused = 0;
   for (const auto& file : files_of(".json")) {
     const Checked<Personality> personality = load_personality(file);
@@ -225,7 +225,7 @@ TEST(LightOfFiles, FullLevelIsTheBrightestThatAnOflFileDescribesAndLevel0IsDark)
   EXPECT_LE(refused * 4, fitted) << "most modes have one dimmer, and no doubt about it";
 }
 
-TEST(LightOfFiles, FullLevelIsTheBrightestThatAGdtfFileDescribesAndLevel0IsDark) {
+TEST(LightOfFiles, FullLevelIsTheBrightestOfAGdtfFileAndLevel0IsDark) {
   std::size_t fitted = 0;
   for (const auto& file : files_of(".gdtf")) {
     const Checked<Personality> personality = load_personality(file);

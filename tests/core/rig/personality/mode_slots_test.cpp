@@ -52,7 +52,7 @@ std::string first_problem(const std::string& fixture, const std::string& luminai
   return rig ? "accepted" : rig.error().front().text();
 }
 
-TEST(ModeSlots, AHeadHasItsAxesItsDimmerAndWhatLetsLightOut) {
+TEST(ModeSlots, AHeadHasItsAxesItsDimmerAndItsShutter) {
   const Rig rig = good_rig("personality = \"Clay Paky@Alpha Spot QWO 800.gdtf\"\n");
   ASSERT_EQ(rig.fixtures.size(), 1u);
   const Fixture& head = rig.fixtures[0];
@@ -76,7 +76,7 @@ TEST(ModeSlots, AHeadHasItsAxesItsDimmerAndWhatLetsLightOut) {
   EXPECT_EQ(slots[21].constant_dmx, 203);
 }
 
-TEST(ModeSlots, AShutterThatIsShutByDefaultIsOpened) {
+TEST(ModeSlots, AShutterClosedByDefaultIsOpened) {
   // MAC 700: closed 0 to 19, open 20 to 49. The same channel strikes its lamp, so that stays manual.
   const Rig rig = good_rig("personality = \"ofl/martin/mac-700-wash.json\"\nmode = \"Extended 23-channel\"\n");
   ASSERT_FALSE(rig.fixtures.empty());
@@ -103,7 +103,7 @@ TEST(ModeSlots, EmittersOfTheLuminaireAreMixedAndTheMasterIsHeldFull) {
   EXPECT_FALSE(red[2].sent);
 }
 
-TEST(ModeSlots, WithoutEmittersColoursAreHeldFullOrFollowTheLevel) {
+TEST(ModeSlots, ColoursWithoutEmittersAreHeldFullOrFollowTheLevel) {
   const Rig dimmed = good_rig("personality = \"BlenderDMX@LED_PAR_64_RGBW@v0.3.gdtf\"\n");
   EXPECT_EQ(slots_in(dimmed)[0].use, SlotUse::dimmer);
   EXPECT_EQ(slots_in(dimmed)[4].constant_dmx, 255) << "white, which is dark by default";
@@ -126,7 +126,7 @@ TEST(ModeSlots, TheRigFileMayNarrowTheTravel) {
             std::string::npos);
 }
 
-TEST(ModeSlots, APlaceholderTravelIsTheRigFilesToState) {
+TEST(ModeSlots, APlaceholderTravelIsReplacedByTheRigFiles) {
   // Robe ColorWash 2500 AT: pan and tilt 0 to 1.
   const Rig rig = good_rig("personality = \"Robe ColorWash 2500 AT.gdtf\"\npan_range_deg = [-265, 265]\n");
   EXPECT_NEAR(deg_from_rad(rig.fixtures.at(0).range.pan_max_rad), 265, 1e-9);
@@ -156,7 +156,7 @@ TEST(ModeSlots, UnknownModesAndEmittersNameTheNearest) {
   EXPECT_NE(emitter.find("has no emitter \"amber\""), std::string::npos) << emitter;
 }
 
-TEST(HeldValues, AZoomAndAWheelDependOnNothingAndAConditionIsMet) {
+TEST(HeldValues, MeetTheConditionsOfOtherChannels) {
   // LEDBeam: its colours exist only while the virtual colour wheel is at 0, its open place.
   const Checked<Personality> beam = load_personality(kFixtureFiles / "Robe@Robin 100 LEDBeam.gdtf");
   ASSERT_TRUE(beam);
@@ -173,7 +173,7 @@ TEST(HeldValues, AZoomAndAWheelDependOnNothingAndAConditionIsMet) {
   }
 }
 
-TEST(ModeSlots, EverySampleModeFitsOrSaysWhyNot) {
+TEST(ModeSlots, EverySampleModeFitsOrReportsWhyNot) {
   std::size_t fitted = 0, refused = 0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(kFixtureFiles)) {
     if (entry.path().extension() != ".gdtf" && entry.path().extension() != ".json") continue;

@@ -48,7 +48,7 @@ TEST(Ofl, EverySampleLoads) {
   EXPECT_EQ(files, 9u);
 }
 
-TEST(Ofl, FineChannelsMakeOneValueWhereverTheyStand) {
+TEST(Ofl, FineChannelsJoinTheirValueAtAnyPosition) {
   const Personality pan_tilt = loaded("generic/pan-tilt.json");
   using Layout = std::vector<std::pair<std::string, std::vector<int>>>;
   EXPECT_EQ(layout(mode_named(pan_tilt, "8 bit")), (Layout{{"Pan", {0}}, {"Tilt", {1}}}));
@@ -63,7 +63,7 @@ TEST(Ofl, FineChannelsMakeOneValueWhereverTheyStand) {
   EXPECT_EQ(mode_named(pan_tilt, "8 bit").tilt_offset_deg, -90);
 }
 
-TEST(Ofl, MatricesAreWrittenOutAndTheirGroupOfAllIsTheWhole) {
+TEST(Ofl, MatricesAreExpandedAndAGroupOfAllPixelsIsTheWhole) {
   const Personality pack = loaded("generic/4-channel-dimmer-pack.json");
   const PersonalityMode& one = mode_named(pack, "1-channel");
   ASSERT_EQ(one.channels.size(), 1u);
@@ -83,7 +83,7 @@ TEST(Ofl, MatricesAreWrittenOutAndTheirGroupOfAllIsTheWhole) {
   EXPECT_EQ(first.geometries[red->geometry].name, "Middle");
 }
 
-TEST(Ofl, SwitchingChannelsAreWhatTheyAreByDefault) {
+TEST(Ofl, SwitchingChannelsTakeTheirDefaultMeaning) {
   const Personality mac = loaded("martin/mac-700-wash.json");
   const PersonalityMode& mode = mac.modes[0];
   EXPECT_TRUE(std::any_of(mode.channels.begin(), mode.channels.end(),
@@ -114,7 +114,7 @@ std::string ofl(const std::string& channels, const std::string& modes, const std
          more + R"("availableChannels": {)" + channels + R"(}, "modes": [)" + modes + "]}";
 }
 
-TEST(Ofl, RangesAreScaledToTheBytesThatAModeUses) {
+TEST(Ofl, RangesAreScaledToTheBytesOfAMode) {
   const std::string wide = R"("D": {"fineChannelAliases": ["D fine"], "dmxValueResolution": "8bit", "defaultValue": 9,
     "capabilities": [{"dmxRange": [0, 9], "type": "ShutterStrobe", "shutterEffect": "Closed"},
                      {"dmxRange": [10, 255], "type": "Intensity"}]})";
@@ -131,7 +131,7 @@ TEST(Ofl, RangesAreScaledToTheBytesThatAModeUses) {
   EXPECT_EQ(read->modes[0].footprint(), 3);
 }
 
-TEST(Ofl, PixelsAreRepeatedInTheOrderAskedFor) {
+TEST(Ofl, PixelsAreRepeatedInTheRequestedOrder) {
   const std::string more = R"("matrix": {"pixelCount": [2, 2, 1]}, "templateChannels": {
     "R $pixelKey": {"capability": {"type": "ColorIntensity", "color": "Red"}}}, )";
   const auto names = [&](const std::string& repeat) {
@@ -153,7 +153,7 @@ TEST(Ofl, PixelsAreRepeatedInTheOrderAskedFor) {
 }
 
 // As cameo/hydrabeam-300-rgbw: each head's mode sets the meaning of its next slot.
-TEST(Ofl, APixelsSwitchingChannelsAreWhatTheyAreByDefaultToo) {
+TEST(Ofl, PixelSwitchingChannelsTakeTheirDefaultMeaningToo) {
   const std::string more = R"("matrix": {"pixelCount": [2, 1, 1]}, "templateChannels": {
     "Mode $pixelKey": {"defaultValue": 20, "capabilities": [
       {"dmxRange": [0, 9], "type": "NoFunction", "switchChannels": {"Speed $pixelKey / Sound $pixelKey": "Speed $pixelKey"}},
@@ -197,7 +197,7 @@ TEST(Ofl, HostileFilesAreRefusedWithAReason) {
   }
 }
 
-TEST(Ofl, ACutOrSpoiledFileIsRefusedOrReadButNeverWorse) {
+TEST(Ofl, TruncatedAndCorruptedFilesAreReadOrRefused) {
   std::ifstream in(kOfl / "american-dj/crazy-pocket-8.json");
   const std::string whole((std::istreambuf_iterator<char>(in)), {});
   ASSERT_TRUE(parse_ofl(whole, "m", "x"));

@@ -22,7 +22,7 @@ RegisterMap map_named(const char* name) {
   return *map;
 }
 
-TEST(RegisterMapFile, EveryShippedMapIsGoodAndSaysWhereItIsFrom) {
+TEST(RegisterMapFile, EveryShippedMapIsValidAndNamesItsSource) {
   std::size_t maps = 0;
   std::set<std::string> names;
   for (const auto& entry : std::filesystem::directory_iterator(kMaps)) {
@@ -37,7 +37,7 @@ TEST(RegisterMapFile, EveryShippedMapIsGoodAndSaysWhereItIsFrom) {
   EXPECT_GE(maps, 4u);
 }
 
-TEST(RegisterMapFile, KnowsTheEightOutputsOfAnAnalogueModule) {
+TEST(RegisterMapFile, DescribesTheEightOutputsOfAnAnalogueModule) {
   const RegisterMap map = map_named("waveshare-analog-output-8ch-b.toml");
   const auto levels = map.with_role(RegisterRole::level);
   ASSERT_EQ(levels.size(), 8u);
@@ -49,7 +49,7 @@ TEST(RegisterMapFile, KnowsTheEightOutputsOfAnAnalogueModule) {
   EXPECT_EQ(told_when_data_stops(map), "holds its last level for ever");
 }
 
-TEST(RegisterMapFile, KnowsRelaysAndInputsOfOneBit) {
+TEST(RegisterMapFile, DescribesRelaysAndInputsOfOneBit) {
   const RegisterMap map = map_named("waveshare-modbus-rtu-relay-d.toml");
   const auto levels = map.with_role(RegisterRole::level);
   ASSERT_EQ(levels.size(), 8u);
@@ -62,7 +62,7 @@ TEST(RegisterMapFile, KnowsRelaysAndInputsOfOneBit) {
   EXPECT_EQ(map.registers[*input].access, RegisterAccess::read_only);
 }
 
-TEST(RegisterMapFile, SaysWhatABitCannotBe) {
+TEST(RegisterMapFile, ReportsSettingsThatABitCannotHave) {
   const std::string device = "[device]\nname = \"a\"\nsource = \"b\"\n[[register]]\nname = \"r\"\naddress = 1\n";
   const auto what_of = [&](const std::string& lines) {
     const auto map = parse_register_map(device + lines, "map.toml");
@@ -87,7 +87,7 @@ TEST(RegisterMapFile, SaysWhatABitCannotBe) {
             std::string::npos);
 }
 
-TEST(RegisterMapFile, KnowsHowTheCouplersWatchdogIsArmed) {
+TEST(RegisterMapFile, DescribesHowToArmTheCouplersWatchdog) {
   const RegisterMap map = map_named("wago-750-559.toml");
   ASSERT_EQ(map.setup.size(), 4u);
   EXPECT_EQ(map.registers[map.setup[0].index].address, 0x1008);
@@ -97,7 +97,7 @@ TEST(RegisterMapFile, KnowsHowTheCouplersWatchdogIsArmed) {
   EXPECT_EQ(told_when_data_stops(map), "goes dark after 2 s by its watchdog, which is armed");
 }
 
-TEST(RegisterMapFile, KnowsTheLuxmetersTwoRegisters) {
+TEST(RegisterMapFile, DescribesTheLuxmetersTwoRegisters) {
   const RegisterMap map = map_named("dfrobot-sen0644.toml");
   const auto readings = map.with_role(RegisterRole::illuminance);
   ASSERT_EQ(readings.size(), 1u);
@@ -111,7 +111,7 @@ TEST(RegisterMapFile, KnowsTheLuxmetersTwoRegisters) {
 
 const std::string kHead = "[device]\nname = \"a\"\nsource = \"b\"\n";  // three lines
 
-TEST(RegisterMapFile, RefusesWhatCannotBeMeant) {
+TEST(RegisterMapFile, RefusesInvalidMaps) {
   const std::vector<std::pair<std::string, std::string>> bad = {
       {"", "map.toml:1:1: there is no [device]"},
       {"[device]\nname = \"a\"\n", "map.toml:1:1: [device] has no \"source\""},
@@ -199,7 +199,7 @@ TEST(RegisterMapFile, ChangingAnyKeyChangesTheMap) {
   }
 }
 
-TEST(RegisterMapFile, IsNoRigFileNorTheOtherWayRound) {
+TEST(RegisterMapFile, AndRigFileAreNotInterchangeable) {
   const auto map = parse_register_map(kHead + "[[fixture]]\n", "map.toml");
   ASSERT_FALSE(map);
   EXPECT_NE(map.error()[0].what.find("unknown section \"fixture\" in a register map"), std::string::npos);

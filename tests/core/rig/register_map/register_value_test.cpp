@@ -11,7 +11,7 @@ namespace {
 RegisterWords words(std::uint16_t first) { return {{first, 0}, 1}; }
 RegisterWords words(std::uint16_t first, std::uint16_t second) { return {{first, second}, 2}; }
 
-TEST(RegisterValue, StandsInEveryOrderAsManualsWriteThem) {
+TEST(RegisterValue, SupportsEveryWordAndByteOrder) {
   // 123456.0 is 47F1 2000 in IEEE 754; 500 000 is 0007 A120.
   const RegisterFormat abcd{2, RegisterNumber::floating, false, false}, cdab{2, RegisterNumber::floating, true, false},
       badc{2, RegisterNumber::floating, false, true}, dcba{2, RegisterNumber::floating, true, true};
@@ -39,7 +39,7 @@ TEST(RegisterValue, SignedNumbersAreTwosComplement) {
   EXPECT_EQ(value_of(wide, s32), -100.0);
 }
 
-TEST(RegisterValue, RoundsToTheNearestAndStopsAtTheEnds) {
+TEST(RegisterValue, RoundsToNearestAndSaturates) {
   const RegisterFormat u16{};
   EXPECT_EQ(words_of(0.5, u16), words(1));
   EXPECT_EQ(words_of(-3, u16), words(0));

@@ -107,7 +107,7 @@ TEST_F(MeshFiles, ATriangleOfObjKeepsItsPlaceUnitAndMaterial) {
   EXPECT_FALSE(scene->materials[scene->material_of_triangle[2]].coloured);
 }
 
-TEST_F(MeshFiles, TurnsEveryUpAxisToZKeepingItRightHanded) {
+TEST_F(MeshFiles, ConvertsEveryUpAxisToZWithoutMirroring) {
   const std::string text = "v 0 0 0\nv 1 0 0\nv 0 2 0\nv 0 0 3\nf 1 2 3\nf 1 3 4\nf 1 4 2\n";
   const auto corner = [&](UpAxis up, std::size_t vertex) {
     const auto scene = load("up.obj", text, up);
@@ -146,7 +146,7 @@ TEST_F(MeshFiles, AppliesTheTransformsOfNestedNodesAndTheBaseColour) {
   EXPECT_NEAR((material.reflectance_rgb - Vec3(0.25, 0.5, 0.75)).norm(), 0, 1e-6);
 }
 
-TEST_F(MeshFiles, OpensNothingOutsideTheFolderOfTheMesh) {
+TEST_F(MeshFiles, OpensNoFileOutsideTheFolderOfTheMesh) {
   std::filesystem::create_directory(folder_ / "inside");
   write("outside.bin", triangle_bytes());
   write("inside/own.bin", triangle_bytes());
@@ -158,7 +158,7 @@ TEST_F(MeshFiles, OpensNothingOutsideTheFolderOfTheMesh) {
   EXPECT_FALSE(load("inside/d.gltf", triangle_gltf(node, (folder_ / "outside.bin").string())).has_value());
 }
 
-TEST_F(MeshFiles, CountsWhatItCleansAndKeepsTheRest) {
+TEST_F(MeshFiles, CountsCleanedTrianglesAndKeepsTheRest) {
   std::string bytes =
       "ply\nformat binary_little_endian 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\n"
       "element face 5\nproperty list uchar int vertex_indices\nend_header\n";
@@ -180,7 +180,7 @@ TEST_F(MeshFiles, CountsWhatItCleansAndKeepsTheRest) {
   for (const auto& vertex : scene->vertices_m) EXPECT_TRUE(vertex.allFinite());
 }
 
-TEST_F(MeshFiles, KeepsThinTrianglesOfAScanFarFromItsOrigin) {
+TEST_F(MeshFiles, KeepsThinTrianglesFarFromTheOrigin) {
   const auto scene = load("thin.obj", "v 1000 0 0\nv 1001 0 0\nv 1000.5 0.001 0\nf 1 2 3\n");
   ASSERT_TRUE(scene.has_value());
   EXPECT_EQ(scene->cleaning.total(), 0u);
@@ -191,7 +191,7 @@ struct Broken {
   std::string bytes;
 };
 
-TEST_F(MeshFiles, RefusesWhatIsNoMeshWithAProblem) {
+TEST_F(MeshFiles, RefusesInvalidMeshesWithAProblem) {
   const std::string ply = sheet_ply(4);
   std::string huge = ply;
   huge.replace(huge.find("element face 32"), 15, "element face 60000000");
@@ -230,7 +230,7 @@ TEST_F(MeshFiles, RefusesWhatIsNoMeshWithAProblem) {
   EXPECT_FALSE(load_mesh({folder_, 1, UpAxis::z}).has_value());
 }
 
-TEST_F(MeshFiles, KeepsOnlyTheMaterialsThatATriangleUses) {
+TEST_F(MeshFiles, KeepsOnlyUsedMaterials) {
   write("paint.mtl",
         "newmtl idle\nKd 1 1 1\nnewmtl oak\nKd 0.4 0.3 0.2\nnewmtl thin\nKd 1 1 1\nnewmtl snow\nKd 1 1 1\n");
   const auto scene = load("a.obj",
@@ -250,7 +250,7 @@ TEST_F(MeshFiles, KeepsOnlyTheMaterialsThatATriangleUses) {
   }
 }
 
-TEST_F(MeshFiles, DropsTheMaterialThatGltfReadersAdd) {
+TEST_F(MeshFiles, DropsTheDefaultMaterialAddedByGltfReaders) {
   write("one.bin", triangle_bytes());
   const auto scene = load("a.gltf", triangle_gltf(R"({"mesh":0})", "one.bin"));
   ASSERT_TRUE(scene.has_value()) << scene.error().front().text();

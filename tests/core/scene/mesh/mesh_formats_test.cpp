@@ -80,7 +80,7 @@ double mean_reflectance(const Scene& scene) {
 const std::string kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n";
 const std::string kFace = "f 1/1 2/2 3/3 4/4\n";
 
-TEST_F(FormatFiles, MaterialsAsNotepadSavesThemAreRead) {
+TEST_F(FormatFiles, MaterialsInUtf16AndWithByteOrderMarksAreRead) {
   const std::string mtl = "newmtl wall\r\nKd 0.25 0.5 0.75\r\n";
   for (const std::string& bytes :
        {utf16(mtl, false), utf16(mtl, true), utf16(mtl, false, false), "\xef\xbb\xbf" + mtl}) {
@@ -93,7 +93,7 @@ TEST_F(FormatFiles, MaterialsAsNotepadSavesThemAreRead) {
   }
 }
 
-TEST_F(FormatFiles, APictureBeforeTheFirstMaterialIsLeftOutAndTold) {
+TEST_F(FormatFiles, APictureBeforeTheFirstMaterialIsOmittedWithAWarning) {
   write("a.mtl", "map_Kd wall.png\nKd 1 1 1\nnewmtl wall\nKd 0.5 0.5 0.5\n");
   const auto scene = load("a.obj", "mtllib a.mtl\nusemtl wall\n" + kSquare + kFace);
   ASSERT_TRUE(scene) << scene.error().front().text();
@@ -119,7 +119,7 @@ TEST_F(FormatFiles, DecimalCommasAreRefusedWithLineAndColumn) {
             "f.stl:4:10: \"0,5\" has a decimal comma");
 }
 
-TEST_F(FormatFiles, APictureCountsAsItsMeanInLinearLightTimesTheColour) {
+TEST_F(FormatFiles, APictureCountsAsItsLinearMeanTimesTheColour) {
   for (const std::string name : {"grey.png", "grey.jpg", "progressive.jpg", "glass.png"}) {
     std::filesystem::remove(folder_ / "WALL.PNG");
     picture(name, "WALL.PNG");  // recognised by content, whatever its name or the capitals in the .mtl
@@ -132,7 +132,7 @@ TEST_F(FormatFiles, APictureCountsAsItsMeanInLinearLightTimesTheColour) {
   }
 }
 
-TEST_F(FormatFiles, EachTriangleHasThePartOfThePictureThatLiesOnIt) {
+TEST_F(FormatFiles, EachTriangleTakesItsPartOfThePicture) {
   picture("black-over-white.png", "a.png");
   write("a.mtl", "newmtl wall\nmap_Kd a.png\n");
   // Two squares, one on the lower half of the picture, which is white, one on the upper, which is black.
@@ -148,7 +148,7 @@ TEST_F(FormatFiles, EachTriangleHasThePartOfThePictureThatLiesOnIt) {
   }
 }
 
-TEST_F(FormatFiles, APictureThatCannotBeReadLeavesTheRigsReflectanceAndIsTold) {
+TEST_F(FormatFiles, AnUnreadablePictureKeepsTheRigsReflectanceWithAWarning) {
   write("a.mtl", "newmtl wall\nKd 1 1 1\nmap_Kd a.png\n");
   write("a.png", "RIFF....WEBPVP8 ");
   const auto scene = load("a.obj", "mtllib a.mtl\nusemtl wall\n" + kSquare + kFace);
@@ -204,7 +204,7 @@ TEST_F(FormatFiles, APictureWithinAGlbCountsAsItsMean) {
   EXPECT_TRUE(warns(*older, "specular colour"));
 }
 
-TEST_F(FormatFiles, EveryInstanceOfAMeshStandsInItsPlace) {
+TEST_F(FormatFiles, EveryInstanceOfAMeshIsPlaced) {
   GltfMaker gltf = GltfMaker::square();
   nlohmann::json& many = gltf.root["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
   many["TRANSLATION"] = gltf.accessor<float>({0, 0, 0, 5, 0, 0, 0, 0, 7}, 5126, "VEC3", 3);
@@ -254,7 +254,7 @@ TEST_F(FormatFiles, CompressionIsRefusedByName) {
   }
 }
 
-TEST_F(FormatFiles, BrokenGltfIsRefusedWithItsLine) {
+TEST_F(FormatFiles, BrokenGltfIsRefusedWithItsLineNumber) {
   EXPECT_EQ(refusal("a.gltf", "{\"asset\":{\"version\":\"2.0\"},\n \"scene\" 0}\n"),
             "a.gltf:2:10: is no JSON from here on");
   EXPECT_EQ(refusal("b.gltf", "{\"asset\":{\"version\":\"1.0\"}}"), "b.gltf:0:0: is glTF \"1.0\"");
@@ -280,7 +280,7 @@ TEST_F(FormatFiles, AVenueInMapCoordinatesKeepsItsMillimetres) {
   EXPECT_LT((scene->vertex_world_m(2) - Vec3(500000.001, 5400001.003, 0)).norm(), 1e-6);
 }
 
-TEST_F(FormatFiles, ABinaryStlThatIsCutShortIsRefusedWithItsCounts) {
+TEST_F(FormatFiles, ATruncatedBinaryStlIsRefusedWithItsCounts) {
   std::string stl(80, ' ');
   test::put_bytes(stl, std::uint32_t{2});
   for (const float value : {0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f}) test::put_bytes(stl, value);
@@ -293,7 +293,7 @@ TEST_F(FormatFiles, ABinaryStlThatIsCutShortIsRefusedWithItsCounts) {
   EXPECT_EQ(whole->triangles.size(), 1u);
 }
 
-TEST_F(FormatFiles, PolygonsThatBendInwardsAreCoveredOnce) {
+TEST_F(FormatFiles, ConcavePolygonsAreCoveredOnce) {
   // An L, and a star of five points; their triangles' areas add up to theirs.
   const auto bent = load("a.obj", "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\nf 1 2 3 4 5 6\n");
   ASSERT_TRUE(bent);

@@ -132,7 +132,7 @@ TEST_F(PlyFiles, NamesTheLineOfABrokenAsciiBody) {
   EXPECT_EQ(with("3 0 1 2", "3       0 1").substr(4), "is cut short at face 1");
 }
 
-TEST_F(PlyFiles, KeepsWhatTheCleaningAfterItMustCount) {
+TEST_F(PlyFiles, KeepsInvalidTrianglesForTheCleaningToCount) {
   const auto mesh = read(replaced(replaced(kTriangle, "1 0 0", "nan 1e999 1e300"), "3 0 1 2", "3 -1 1 4294967296"));
   ASSERT_TRUE(mesh.has_value()) << mesh.error().front().text();
   for (int axis = 0; axis < 3; ++axis) EXPECT_TRUE(std::isnan(mesh->vertices[1][axis]));
@@ -152,7 +152,7 @@ TEST_F(PlyFiles, RefusesEveryTruncation) {
   }
 }
 
-TEST_F(PlyFiles, AgreesWithItselfAcrossTheEdgesOfItsBlocks) {
+TEST_F(PlyFiles, IsConsistentAcrossBlockBoundaries) {
   // 20,000 vertices in words of 1 to 20 characters: many cross the border of a 64 KiB block.
   std::mt19937 random(7);
   std::string bytes = replaced(kTriangle.substr(0, kTriangle.find("0 0 0")), "vertex 3", "vertex 20000");

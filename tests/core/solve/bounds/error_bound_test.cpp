@@ -15,7 +15,7 @@ using namespace error_bound_fixture;
 
 constexpr double kEnumerationRounding = 1e-12;
 
-TEST(ErrorBound, IsTheLeastErrorWhereLevelsAreTheBest) {
+TEST(ErrorBound, EqualsTheLeastErrorAtOptimalLevels) {
   int above_zero = 0;
   for (unsigned seed = 1; seed <= 3000; ++seed) {
     const TinyLights tiny(seed);
@@ -50,7 +50,7 @@ TEST(ErrorBound, HoldsForAnyLevels) {
 }
 
 // Thousands of problems, with arbitrary and with sensible prices, and from one block to as many as rows.
-TEST(ErrorBoundsByCount, AreNeverAboveWhatAnyChoiceOfLightsReaches) {
+TEST(ErrorBoundsByCount, AreNeverAboveTheErrorOfAnyChoiceOfLights) {
   constexpr std::size_t kMax = 3;
   double bound_sum = 0, min_sum = 0;
   for (unsigned seed = 1; seed <= 4000; ++seed) {
@@ -84,7 +84,7 @@ TEST(ErrorBoundsByCount, AreNeverAboveWhatAnyChoiceOfLightsReaches) {
 }
 
 // One block loses nothing: branch and bound ends at the least error.
-TEST(ErrorBoundsByCount, InOneBlockReachTheLeastError) {
+TEST(ErrorBoundsByCount, ReachTheLeastErrorInOneBlock) {
   for (unsigned seed = 1; seed <= 400; ++seed) {
     const TinyLights tiny(seed);
     CountBoundOptions options;
@@ -103,7 +103,7 @@ TEST(ErrorBoundsByCount, InOneBlockReachTheLeastError) {
   }
 }
 
-TEST(ErrorBound, NamesRowsThatNothingReachesAndCountsThem) {
+TEST(ErrorBound, NamesUnreachableRowsAndCountsThem) {
   MatrixXd A(3, 2);
   A << 1, 2, 0, 0, 1, 1;
   const VectorXd goal = VectorXd::Ones(3);
@@ -117,7 +117,7 @@ TEST(ErrorBound, NamesRowsThatNothingReachesAndCountsThem) {
   EXPECT_NEAR(bound[1], std::sqrt(1.0 / 3), 1e-6);
 }
 
-TEST(ErrorBound, RefusesWhatItCannotProveAnythingAbout) {
+TEST(ErrorBound, RefusesProblemsItCannotBound) {
   MatrixXd A(1, 2);
   A << 1, -1;
   const VectorXd goal = VectorXd::Ones(1);

@@ -24,7 +24,7 @@ LightingGoal drawn_goal(Random& random, Index points, Index channels) {
   return goal;
 }
 
-TEST(GoalBounds, AreBelowTheBestOfAllPairsOfCandidatesInOneChannelAndInThree) {
+TEST(GoalBounds, AreBelowTheBestOfAllPairsInOneAndThreeChannels) {
   const LitHall hall(make_box_room(2), 0.9);
   const auto points = static_cast<Index>(hall.room.receivers.size());
   Random random(3);
@@ -55,7 +55,7 @@ TEST(GoalBounds, AreBelowTheBestOfAllPairsOfCandidatesInOneChannelAndInThree) {
   }
 }
 
-TEST(GoalBounds, OfAnyNumberIsWhatLeastSquaresOverAllCandidatesReaches) {
+TEST(GoalBounds, ForAnyNumberMatchLeastSquaresOverAllCandidates) {
   const LitHall hall(make_box_room(2), 0.9);
   Random random(5);
   const LightingGoal goal = drawn_goal(random, static_cast<Index>(hall.room.receivers.size()), 1);

@@ -96,7 +96,7 @@ double distance_from_optimum(const LimitedLeastSquares& p, const VectorXd& z) {
 
 double error_of(const LimitedLeastSquares& p, const VectorXd& z) { return (p.E * z - p.f).norm(); }
 
-TEST(LimitedLeastSquares, ManyConstraintsAtATimeEndWhereOneAtATimeDoes) {
+TEST(LimitedLeastSquares, ManyConstraintsAtATimeMatchOneAtATime) {
   constexpr int kProblems = 600;
   int taken = 0;
   double worst = 0, worst_kkt = 0, worst_tie = 0;
@@ -124,7 +124,7 @@ TEST(LimitedLeastSquares, ManyConstraintsAtATimeEndWhereOneAtATimeDoes) {
               worst, worst_tie);
 }
 
-TEST(LimitedLeastSquares, TwoHundredLightsAndMoreReachTheReferenceAtThreeHundredPoints) {
+TEST(LimitedLeastSquares, TwoHundredLightsAtThreeHundredPointsMatchTheReference) {
   for (int seed = 0; seed < 6; ++seed) {
     const LimitedLeastSquares p = random_lights(seed, 200, 300);
     const LimitedLeastSquaresResult at = solve_limited_least_squares(p, {});
@@ -154,7 +154,7 @@ LimitedLeastSquares lights_along_a_wall(Index lights, Index points, bool reflect
   return scaled_lights(lux, goal_lx, max_lx, VectorXd::Ones(lights));
 }
 
-TEST(LimitedLeastSquares, AThousandLightsNeedNoSecondWay) {
+TEST(LimitedLeastSquares, AThousandLightsNeedNoFallback) {
   for (const bool limits_everywhere : {false, true}) {
     const LimitedLeastSquares p = lights_along_a_wall(1000, 500, false, limits_everywhere);
     const auto at = solve_by_multipliers(p, {});
@@ -164,7 +164,7 @@ TEST(LimitedLeastSquares, AThousandLightsNeedNoSecondWay) {
   }
 }
 
-TEST(LimitedLeastSquares, ALimitAtEveryGoalEndsAtTheReference) {
+TEST(LimitedLeastSquares, ALimitAtEveryGoalMatchesTheReference) {
   for (const bool reflections : {false, true}) {
     const LimitedLeastSquares p = lights_along_a_wall(250, 125, reflections, true);
     const LimitedLeastSquaresResult at = solve_limited_least_squares(p, {});
@@ -174,7 +174,7 @@ TEST(LimitedLeastSquares, ALimitAtEveryGoalEndsAtTheReference) {
   }
 }
 
-TEST(LimitedLeastSquares, EqualLightsShareAlike) {
+TEST(LimitedLeastSquares, EqualLightsShareEqually) {
   LimitedLeastSquares one = random_lights(7, 110, 90);
   LimitedLeastSquares two;  // each light twice
   const Index n = one.E.cols(), points = one.E.rows() - n;

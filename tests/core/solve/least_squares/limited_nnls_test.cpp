@@ -116,7 +116,7 @@ TEST(LimitedNnls, OptimalityHoldsOnThousandsOfDegenerateProblems) {
 }
 
 /// The primal active-set method by QR, which takes full rank and limits that x = 0 keeps.
-TEST(LimitedNnls, FindsWhatThePrimalMethodFinds) {
+TEST(LimitedNnls, MatchesThePrimalMethod) {
   int compared = 0;
   double worst = 0;
   for (int seed = 0; seed < 600; ++seed) {
@@ -173,7 +173,7 @@ TEST(LimitedNnls, HandlesNoLimitsNoGoalAndLimitsWithoutColumns) {
               1e-12 * c.goal.norm());
 }
 
-TEST(LimitedNnls, RefusesLimitsBelowZeroOrNotFiniteAndSizesThatDisagree) {
+TEST(LimitedNnls, RefusesNegativeOrNonFiniteLimitsAndMismatchedSizes) {
   const LeastSquaresCase c = least_squares_case(1, 20, 10);
   LinearLimits limits;
   limits.rows.resize(1, c.A.cols());

@@ -59,7 +59,7 @@ TEST(NnlsOfFew, IsOptimalAfterEachOfTwentyThousandExchanges) {
   std::printf("%d exchanges: worst KKT violation %.2e\n", checked, worst);
 }
 
-TEST(NnlsOfFew, ACopyIsAStateToReturnTo) {
+TEST(NnlsOfFew, ACopyRestoresAnEarlierState) {
   const LeastSquaresCase c = least_squares_case(13, 40, 60);
   NnlsOfFew few(*share_problem(c.sparse()));
   few.choose(std::vector<Index>{0, 1 % c.A.cols(), 2 % c.A.cols()});

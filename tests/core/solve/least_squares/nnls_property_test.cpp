@@ -71,7 +71,7 @@ TEST(NnlsProperties, OptimalityHoldsOnSixThousandDegenerateProblems) {
               worst_said, orthogonal);
 }
 
-TEST(NnlsProperties, FindsWhatEnumerationOfAllActiveSetsFinds) {
+TEST(NnlsProperties, MatchesEnumerationOfAllActiveSets) {
   double worst = 0;
   for (int seed = 0; seed < 1800; ++seed) {
     const bool bounded = seed % 12 == 9 || seed % 12 == 11;
@@ -103,7 +103,7 @@ VectorXd projected_gradient(const MatrixXd& A, const VectorXd& b, int steps) {
   return x;
 }
 
-TEST(NnlsProperties, FindsWhatProjectedGradientsConvergeTo) {
+TEST(NnlsProperties, MatchesProjectedGradients) {
   for (int seed = 0; seed < 60; ++seed) {
     LeastSquaresCase c = least_squares_case(12 * seed + 1, 60, 50);
     const auto solution = solve_nnls(c.sparse());
@@ -114,7 +114,7 @@ TEST(NnlsProperties, FindsWhatProjectedGradientsConvergeTo) {
 }
 
 /// The fallback, which none of the problems above needs, must be as good.
-TEST(NnlsProperties, OrthogonalFactorsFindTheSame) {
+TEST(NnlsProperties, OrthogonalFactorsGiveTheSameResult) {
   double worst = 0;
   for (int seed = 0; seed < 1200; ++seed) {
     const LeastSquaresCase c = least_squares_case(seed, 30, seed % 3 == 0 ? 60 : 12);
@@ -131,7 +131,7 @@ TEST(NnlsProperties, OrthogonalFactorsFindTheSame) {
   std::printf("1200 problems by orthogonal factors: worst KKT violation %.2e\n", worst);
 }
 
-TEST(NnlsProperties, OneAtATimeAndManyAtATimeEndTheSame) {
+TEST(NnlsProperties, OneAndManyColumnsAtATimeGiveTheSameResult) {
   for (int seed = 0; seed < 40; ++seed) {
     const LeastSquaresCase c = least_squares_case(12 * seed + 2, 120, 600);
     NnlsOptions one;
@@ -143,7 +143,7 @@ TEST(NnlsProperties, OneAtATimeAndManyAtATimeEndTheSame) {
   }
 }
 
-TEST(NnlsProperties, GoesOnFromWhereItEnded) {
+TEST(NnlsProperties, ContinuesFromItsLastSolution) {
   const LeastSquaresCase c = least_squares_case(12 * 7 + 2, 200, 2000);
   auto solver = NnlsSolver::make(c.sparse());
   ASSERT_TRUE(solver.has_value());
@@ -179,7 +179,7 @@ TEST(NnlsProperties, GoesOnFromWhereItEnded) {
   EXPECT_NEAR(solver->solve().residual_norm, cold->residual_norm, 1e-12 * other.norm());
 }
 
-TEST(NnlsProperties, RefusesWhatIsNoNumberAndSizesThatDisagree) {
+TEST(NnlsProperties, RefusesNaNAndMismatchedSizes) {
   MatrixXd A = MatrixXd::Ones(2, 2);
   const auto detail = [](const NnlsProblem& problem) {
     const auto solution = solve_nnls(problem);

@@ -121,7 +121,7 @@ TEST(Nnls, MeetsTheKktConditionsOnAThousandProblemsOfEveryKind) {
   std::printf("worst KKT residual of 1000: %.2e\n", worst);
 }
 
-TEST(Nnls, FindsWhatEnumeratingAllActiveSetsFinds) {
+TEST(Nnls, MatchesEnumerationOfAllActiveSets) {
   for (int seed = 0; seed < 400; ++seed) {
     const Case c = random_case(seed, 10);
     const NnlsResult result = solve_nnls(c.A, c.b);
@@ -131,7 +131,7 @@ TEST(Nnls, FindsWhatEnumeratingAllActiveSetsFinds) {
   }
 }
 
-TEST(Nnls, FindsTheLevelsThemselvesWhereTheyAreUnique) {
+TEST(Nnls, RecoversUniqueLevels) {
   for (int seed = 0; seed < 200; ++seed) {
     std::mt19937 random(static_cast<unsigned>(seed));
     std::uniform_real_distribution<double> uniform;
@@ -144,7 +144,7 @@ TEST(Nnls, FindsTheLevelsThemselvesWhereTheyAreUnique) {
   }
 }
 
-TEST(Nnls, HandlesNothing) {
+TEST(Nnls, HandlesEmptyInput) {
   EXPECT_EQ(solve_nnls(MatrixXd(3, 0), VectorXd::Ones(3)).x.size(), 0);
   EXPECT_DOUBLE_EQ(solve_nnls(MatrixXd(3, 0), VectorXd::Ones(3)).residual_norm, std::sqrt(3.0));
   const NnlsResult no_rows = solve_nnls(MatrixXd(0, 4), VectorXd(0));
@@ -165,7 +165,7 @@ TEST(Nnls, StaysFiniteAtTheEndsOfTheRangeOfDouble) {
   }
 }
 
-TEST(Nnls, DoesNotCareForUnits) {
+TEST(Nnls, DoesNotDependOnUnits) {
   const Case c = random_case(1, 20);
   const NnlsResult one = solve_nnls(c.A, c.b);
   const NnlsResult other = solve_nnls(c.A * 0x1p-30, c.b * 0x1p20);

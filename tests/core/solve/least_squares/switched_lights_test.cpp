@@ -131,7 +131,7 @@ void expect_allowed(const EmittanceProblem& p, const VectorXd& level, unsigned s
   ASSERT_LE(p.watts.dot(level), p.max_watts) << "seed " << seed;
 }
 
-TEST(SwitchedLights, AreSetAsTheBestOfAllSettings) {
+TEST(SwitchedLights, MatchTheBestOfAllSettings) {
   int with_switched = 0, with_some_on = 0, worse_than_dimmed = 0;
   for (unsigned seed = 0; seed < 600; ++seed) {
     const EmittanceProblem p = random_problem(seed, 8, 7);
@@ -173,7 +173,7 @@ EmittanceProblem one_point(std::vector<double> lux, std::vector<bool> switched, 
   return p;
 }
 
-TEST(SwitchedLights, OneOfAHundredLuxIsOnFromHalfOfItUp) {
+TEST(SwitchedLights, TurnOnAtHalfTheirLight) {
   EXPECT_EQ(solve_emittance(one_point({100}, {true}, 60, kBoundless))->level[0], 1);
   EXPECT_EQ(solve_emittance(one_point({100}, {true}, 40, kBoundless))->level[0], 0);
   EXPECT_EQ(solve_emittance(one_point({100}, {true}, 90, 99))->level[0], 0) << "it would be above the limit";
@@ -183,7 +183,7 @@ TEST(SwitchedLights, OneOfAHundredLuxIsOnFromHalfOfItUp) {
   EXPECT_NE(tight->points[0].reason.find("'a' can only be on or off"), std::string::npos) << tight->points[0].reason;
 }
 
-TEST(SwitchedLights, WhatDimsMakesUpForThem) {
+TEST(SwitchedLights, DimmableLightsMakeUpForThem) {
   const auto both = solve_emittance(one_point({100, 70, 50}, {true, true, false}, 190, kBoundless));
   EXPECT_EQ(both->level[0], 1);
   EXPECT_EQ(both->level[1], 1);
@@ -195,7 +195,7 @@ TEST(SwitchedLights, WhatDimsMakesUpForThem) {
   EXPECT_TRUE(both->points[0].reason.empty() && one->points[0].reason.empty());
 }
 
-TEST(SwitchedLights, ManyAlikeComeToAnEndAndSayWhetherTheyAreProven) {
+TEST(SwitchedLights, ManyEqualOnesFinishAndStateWhetherTheyAreProven) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> uniform;
   EmittanceProblem p;

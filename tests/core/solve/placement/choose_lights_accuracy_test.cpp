@@ -10,7 +10,7 @@ namespace {
 
 using namespace choose_lights_fixture;
 
-TEST(ChooseLights, GivesACurveThatFallsAndLightsForEveryPointOfIt) {
+TEST(ChooseLights, GivesAFallingCurveWithLightsForEachOfItsPoints) {
   const LitHall hall(make_box_room(1), 0.3);
   LightingGoal goal;
   goal.lux = Eigen::VectorXd::Constant(hall.light->points(), 200);

@@ -10,7 +10,7 @@ namespace {
 
 using namespace choose_lights_fixture;
 
-TEST(ChooseLights, GivesTheSameForAnyNumberOfThreadsAndTheBestSoFarWhenStopped) {
+TEST(ChooseLights, IsTheSameForAnyNumberOfThreadsAndKeepsTheBestWhenStopped) {
   const LitHall hall(make_box_room(2), 0.4);
   LightingGoal goal;
   goal.lux = Eigen::VectorXd::Constant(hall.light->points(), 200);

@@ -10,7 +10,7 @@ namespace {
 
 using namespace choose_lights_fixture;
 
-TEST(ChooseLights, FindsHowManyKnownLightsThereAre) {
+TEST(ChooseLights, FindsTheNumberOfKnownLights) {
   const LitHall hall(make_box_room(3), 0.25);
   const std::vector<Vec3> places_m = {{0.9, 0.8, 2.1}, {3.1, 2.2, 1.9}, {2.2, 1.4, 2.3}, {0.6, 2.4, 1.5}};
   for (std::size_t count = 1; count <= places_m.size(); ++count) {
@@ -24,7 +24,7 @@ TEST(ChooseLights, FindsHowManyKnownLightsThereAre) {
   }
 }
 
-TEST(ChooseLights, TakesAGoalOfZeroAndRoomsWithoutCandidates) {
+TEST(ChooseLights, HandlesAZeroGoalAndRoomsWithoutCandidates) {
   const LitHall hall(make_box_room(1), 0.5);
   LightingGoal zero;
   zero.lux = Eigen::VectorXd::Zero(hall.light->points());

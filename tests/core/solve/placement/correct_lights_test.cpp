@@ -26,7 +26,7 @@ LuxOfLights better_lux(const LitHall& hall) {
   };
 }
 
-TEST(CorrectLights, BringsAQuickModelToWhatABetterOneSays) {
+TEST(CorrectLights, BringsAQuickModelToABetterOnesResult) {
   LitRoom empty = make_box_room(3);  // no shadows, so refining is enough
   empty.scene = {};
   const LitHall hall(empty, 10);
@@ -61,7 +61,7 @@ TEST(CorrectLights, BringsAQuickModelToWhatABetterOneSays) {
   }
 }
 
-TEST(CorrectLights, GivesBackTheLightsAsTheyCameWhenNothingIsBetter) {
+TEST(CorrectLights, ReturnsTheLightsUnchangedWhenNothingIsBetter) {
   const LitHall hall(make_box_room(3), 0.5);
   const LuxOfLights lux_of = better_lux(hall);
   LightingGoal goal;

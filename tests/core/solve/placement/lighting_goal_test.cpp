@@ -26,7 +26,7 @@ PlaceOptions place_count(std::size_t lights) {
   return options;
 }
 
-TEST(LightPose, MovesAsItsStepSays) {
+TEST(LightPose, MovesByItsStep) {
   Random random(3);
   for (int trial = 0; trial < 200; ++trial) {
     const LightPose pose{{1, 2, 3}, trial == 0 ? Vec3(0, 0, -1) : trial == 1 ? Vec3(0, 0, 1) : random.direction()};
@@ -43,7 +43,7 @@ TEST(LightPose, MovesAsItsStepSays) {
 }
 
 // Compared with central differences of the columns.
-TEST(SceneLight, SlopesOfAnAimedSpotAreThoseOfItsColumns) {
+TEST(SceneLight, SlopesOfAnAimedSpotMatchItsColumns) {
   const LitHall hall(empty_room(), 10);
   const SceneLight spot(*hall.transport, hall.room.receivers, {make_cosine_power(1, 6), {}}, {.aimed = true});
   Random random(5);
@@ -66,7 +66,7 @@ TEST(SceneLight, SlopesOfAnAimedSpotAreThoseOfItsColumns) {
   }
 }
 
-TEST(PlaceLights, FindsWhereSpotsHangAndWhatTheyLookAt) {
+TEST(PlaceLights, FindsThePlacesAndAimsOfSpots) {
   const LitHall hall(make_box_room(3), 0.5);
   const Emitter luminaire{make_cosine_power(1, 6), {}};
   const SceneLight spot(*hall.transport, hall.room.receivers, luminaire, {.aimed = true});
@@ -130,7 +130,7 @@ TEST(PlaceLights, FindsColouredLights) {
   }
 }
 
-TEST(ComplementSearch, GivesTheFallOfTheErrorForPrimariesThatShareNoChannel) {
+TEST(ComplementSearch, GivesTheErrorReductionForIndependentPrimaries) {
   const LitHall hall(make_box_room(1), 0.6);
   const Eigen::Index points = hall.light->points();
   Random random(4);
@@ -158,7 +158,7 @@ TEST(ComplementSearch, GivesTheFallOfTheErrorForPrimariesThatShareNoChannel) {
   }
 }
 
-TEST(PlacedLights, AddsToLightThatIsThereAndKeepsTheLargestLevel) {
+TEST(PlacedLights, AddToExistingLightAndKeepTheLargestLevel) {
   const LitHall hall(empty_room(), 0.5);
   const std::vector<LightPose> poses = {{{1, 1, 2.2}}, {{3, 2, 2.2}}};
   LightingGoal goal = hall.goal_of({poses[0].position_world_m, poses[1].position_world_m}, {700, 400});
@@ -176,7 +176,7 @@ TEST(PlacedLights, AddsToLightThatIsThereAndKeepsTheLargestLevel) {
   EXPECT_EQ(lights.levels()[0], 350);
 }
 
-TEST(PlacedLights, KeepLimitsOfLuxAndPowerAndAreTheBestThatDo) {
+TEST(PlacedLights, KeepLuxAndPowerLimitsOptimally) {
   const LitHall hall(make_box_room(2), 0.5);
   Random random(8);
   for (int trial = 0; trial < 30; ++trial) {
@@ -243,7 +243,7 @@ TEST(EnergyFront, ErrorsRiseAsPowerFallsAndEveryLimitIsKept) {
   EXPECT_LT(front[2].lights.error(), still.error());
 }
 
-TEST(SceneLight, APanelIsThePointFarAwayAndItsSurfaceNearBy) {
+TEST(SceneLight, APanelActsAsAPointFromAfarAndAsASurfaceNearby) {
   const LitHall hall(empty_room(), 0.5);
   Emitter panel{make_cosine_power(1, 1), {}};
   const SceneLight point(*hall.transport, hall.room.receivers, panel);

@@ -60,7 +60,7 @@ TEST(Mounting, StaysInItsBox) {
   });
 }
 
-TEST(Mounting, OffTheCeilingIsWithinItsOffsetsAndClearOfTheWalls) {
+TEST(Mounting, OffTheCeilingKeepsItsOffsetsAndWallClearance) {
   MountedRoom room;
   room.hang_off("ceil*", 0.1, 0.4);
   room.spec.clearance_m = 0.5;
@@ -68,7 +68,7 @@ TEST(Mounting, OffTheCeilingIsWithinItsOffsetsAndClearOfTheWalls) {
                         [](const Vec3& p) { return p.z() <= 2.4 && p.z() >= 2.1 && to_sides_m(p) >= 0.5; });
 }
 
-TEST(Mounting, SnapsToTheNearestPlaceAndHoldsOnlyWhatItMust) {
+TEST(Mounting, SnapsToTheNearestPlaceAndFixesOnlyNeededAxes) {
   MountedRoom room;
   room.hang_off("ceiling", 0.1, 0.4);
   room.spec.clearance_m = 0.5;
@@ -128,7 +128,7 @@ TEST(Mounting, CandidatesOffASurfaceLieOnOneLatticeInLayers) {
   EXPECT_EQ(*mounting.candidates(3), *places_m) << "whatever the threads";
 }
 
-TEST(Mounting, NamesThatFitNothingAreRefusedWithPlaceAndMend) {
+TEST(Mounting, UnknownNamesAreRefusedWithPlaceAndRemedy) {
   MountedRoom room;
   room.hang_off("ceilng", 0.1, 0.2);
   const auto mounting = room.make();
@@ -139,7 +139,7 @@ TEST(Mounting, NamesThatFitNothingAreRefusedWithPlaceAndMend) {
   EXPECT_EQ(mounting.error()[0].mend, "did you mean \"ceiling\"?");
 }
 
-TEST(Mounting, AVoidNeedsABox) {
+TEST(Mounting, AnEmptySceneNeedsABox) {
   const Scene scene;
   const RayScene rays(scene);
   MountingSpec spec;
@@ -150,7 +150,7 @@ TEST(Mounting, AVoidNeedsABox) {
   EXPECT_GT(mounting->candidates(1)->size(), 10'000u);
 }
 
-TEST(Mounting, SaysSoWhenThereAreTooManyPlacesOrNone) {
+TEST(Mounting, RefusesTooManyPlacesOrNone) {
   MountedRoom room;
   room.spec.spacing_m = 0.002;
   const auto many = room.make()->candidates(1);
@@ -163,7 +163,7 @@ TEST(Mounting, SaysSoWhenThereAreTooManyPlacesOrNone) {
   EXPECT_NE(none.error().detail.find("no light may hang anywhere"), std::string::npos) << none.error().detail;
 }
 
-TEST(SurfaceLattice, IsTheSameHoweverTheSurfaceIsCut) {
+TEST(SurfaceLattice, IsTheSameForAnyTriangulation) {
   const Vec3 low(0, 0, 1), right(2, 0, 1), high(2, 2, 1), left(0, 2, 1);
   const auto points_of = [](const std::vector<std::array<Vec3, 3>>& triangles) {
     std::vector<std::array<double, 3>> points;

@@ -37,7 +37,7 @@ TEST(PlaceInScene, FindsKnownLightsUnderACeiling) {
   for (const LightInScene& light : found->lights) EXPECT_TRUE(room.mounting.may_hang(light.position_world_m));
 }
 
-TEST(PlaceInScene, FindsHowManyThereAre) {
+TEST(PlaceInScene, FindsTheNumberOfLights) {
   const LitFloor room;
   const auto found = room.place(room.goal_of(kThree), direct_light());
   ASSERT_TRUE(found);
@@ -47,7 +47,7 @@ TEST(PlaceInScene, FindsHowManyThereAre) {
   EXPECT_LE(found->numbers[2].error, 0.001);
 }
 
-TEST(PlaceInScene, HangsNoMoreThanIsWorthIt) {
+TEST(PlaceInScene, AddsNoLightsThatBringTooLittle) {
   const LitFloor room;
   PlaceInSceneOptions options = direct_light();
   options.max_lights = 5;
@@ -60,7 +60,7 @@ TEST(PlaceInScene, HangsNoMoreThanIsWorthIt) {
   EXPECT_GE(found->numbers.size(), 2u) << "more were looked at";
 }
 
-TEST(PlaceInScene, HangsMoreWhereOneCannotGiveEnough) {
+TEST(PlaceInScene, AddsLightsWhereOneCannotGiveEnough) {
   const LitFloor room;
   PlaceInSceneOptions options = direct_light();
   options.max_level = 250;
@@ -75,7 +75,7 @@ TEST(PlaceInScene, HangsMoreWhereOneCannotGiveEnough) {
   for (const LightInScene& light : found->lights) EXPECT_LE(light.level, 250);
 }
 
-TEST(PlaceInScene, LightsThatLieOutsideAreSoughtAtTheEdge) {
+TEST(PlaceInScene, PlacesLightsAtTheEdgeWhenTheyLieOutside) {
   // These lights hang lower than allowed: the best place is at the far offset.
   const LitFloor room;
   PlaceInSceneOptions options = direct_light();
@@ -89,7 +89,7 @@ TEST(PlaceInScene, LightsThatLieOutsideAreSoughtAtTheEdge) {
   EXPECT_NEAR(at.y(), 1.5, 0.02);
 }
 
-TEST(PlaceInScene, StoppedItGivesTheBestSoFar) {
+TEST(PlaceInScene, ReturnsTheBestSoFarWhenStopped) {
   const LitFloor room;
   LightingGoal even = room.goal_of(kThree);
   even.lux.setConstant(100);
@@ -113,7 +113,7 @@ TEST(PlaceInScene, StoppedItGivesTheBestSoFar) {
 }
 
 /// Two lamps with red, green, blue and white emitters, by the inverse square law. Goals are stacked by primary.
-TEST(PlaceInScene, FindsLampsWithSeveralEmittersFromGoalsOfAColour) {
+TEST(PlaceInScene, FindsMultiEmitterLampsFromColourGoals) {
   const LitFloor room;
   const auto points = static_cast<Eigen::Index>(room.receivers.size());
   LightingGoal goal;
@@ -158,7 +158,7 @@ TEST(PlaceInScene, FindsLampsWithSeveralEmittersFromGoalsOfAColour) {
   EXPECT_GT(found->front[4].error, 0.3);
 }
 
-TEST(PlaceInScene, KeepsALimitOfPower) {
+TEST(PlaceInScene, KeepsAPowerLimit) {
   const LitFloor room;
   LightingGoal goal = room.goal_of(kThree);
   goal.watts = Eigen::VectorXd::Constant(1, 0.01);  // 18 W would be enough

@@ -52,7 +52,7 @@ TEST(PlaceLights, AgreesWithTheTenLampsOfAFlat) {
   EXPECT_LE(farthest_off_m(places_m, got.lights), 0.03);
 }
 
-TEST(PlaceLights, BeginsAHardGoalInAnotherWayTooAndKeepsTheBetter) {
+TEST(PlaceLights, TriesASecondStartForAHardGoalAndKeepsTheBetter) {
   const LitHall hall(make_eight_room_flat(2), 0.6);
   const LightingGoal even{Eigen::VectorXd::Constant(hall.light->points(), 200)};
   const ComplementSearch candidates(hall.view(), hall.poses, even);

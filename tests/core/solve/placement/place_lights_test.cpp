@@ -7,7 +7,7 @@
 namespace luxrig {
 namespace {
 
-TEST(PlaceLights, DoesNotBeginInAnotherWayWhereTheGoalCanBeMet) {
+TEST(PlaceLights, SkipsTheSecondStartWhereTheGoalCanBeMet) {
   const LitHall hall(make_box_room(3), 0.25);
   const LightingGoal goal = hall.goal_of({{0.9, 0.8, 2.1}, {3.1, 2.2, 1.9}}, {800, 500});
   const ComplementSearch candidates(hall.view(), hall.poses, goal);
@@ -20,7 +20,7 @@ TEST(PlaceLights, DoesNotBeginInAnotherWayWhereTheGoalCanBeMet) {
   EXPECT_LE(place_lights(*hall.light, goal, candidates, options).lights.error(), 1e-4);
 }
 
-TEST(PlaceLights, TellsOfBetterOnesAsItGoesAndReturnsTheBestWhenStopped) {
+TEST(PlaceLights, ReportsImprovementsAndReturnsTheBestWhenStopped) {
   const LitHall hall(make_box_room(1), 0.4);
   const LightingGoal goal{Eigen::VectorXd::Constant(hall.light->points(), 200)};
   const ComplementSearch candidates(hall.view(), hall.poses, goal);
@@ -42,7 +42,7 @@ TEST(PlaceLights, TellsOfBetterOnesAsItGoesAndReturnsTheBestWhenStopped) {
   EXPECT_EQ(got.lights.error(), last);
 }
 
-TEST(PlaceLights, TakesGoalsOfZeroPointsOutOfReachAndEqualCandidates) {
+TEST(PlaceLights, HandlesZeroGoalsUnreachablePointsAndEqualCandidates) {
   LitHall hall(make_box_room(1), 0.5);
   const Eigen::Index points = hall.light->points();
   // Each candidate twice.

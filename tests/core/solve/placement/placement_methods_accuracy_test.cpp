@@ -27,7 +27,7 @@ double error_from_scratch(const LitHall& hall, const LightingGoal& goal, const P
   return rest.norm() / goal.lux.norm();
 }
 
-TEST(PlacementMethods, FindKnownLightsAsWellAsTheyShould) {
+TEST(PlacementMethods, FindKnownLightsWithinTheirStatedErrors) {
   const LitHall hall(make_box_room(3), kHallLattice_m);
   const LightingGoal goal = hall.goal_of({{0.9, 0.8, 2.1}, {3.1, 2.2, 1.9}, {2.2, 1.4, 2.3}}, {800, 500, 300});
   // Annealing runs from one start: draws differ between compilers, and some end higher. No light is at a candidate:
@@ -46,7 +46,7 @@ TEST(PlacementMethods, FindKnownLightsAsWellAsTheyShould) {
   }
 }
 
-TEST(PlacementMethods, KeepToColours) {
+TEST(PlacementMethods, ReachColourGoals) {
   // Red, green and blue emitters in each light, some existing light.
   const LitHall hall(make_box_room(3), kHallLattice_m);
   const Eigen::Index points = hall.light->points();

@@ -26,7 +26,7 @@ TEST(PlacementMethods, AreFoundByName) {
   EXPECT_EQ(find_placement_method("lin2013"), nullptr) << "only compared with";
 }
 
-TEST(PlacementMethods, ChooseANumberWhereTheyCan) {
+TEST(PlacementMethods, ChooseTheNumberOfLightsIfTheyCan) {
   const LitHall hall(make_box_room(3), kHallLattice_m);
   const LightingGoal goal = hall.goal_of({{0.9, 0.8, 2.1}, {3.1, 2.2, 1.9}, {2.2, 1.4, 2.3}}, {800, 500, 300});
   for (const PlacementMethod& method : compared_methods()) {
@@ -63,7 +63,7 @@ TEST(PlacementMethods, MoreStartsAreNeverWorse) {
   }
 }
 
-TEST(PlacementMethods, TellOfBetterOnesAndEndWhenStopped) {
+TEST(PlacementMethods, ReportImprovementsAndEndWhenStopped) {
   const LitHall hall(make_box_room(1), kHallLattice_m);
   const LightingGoal goal{Eigen::VectorXd::Constant(hall.light->points(), 200), {}};
   for (const PlacementMethod& method : compared_methods()) {
@@ -94,7 +94,7 @@ TEST(PlacementMethods, TellOfBetterOnesAndEndWhenStopped) {
   }
 }
 
-TEST(PlacementMethods, TakeHostileInput) {
+TEST(PlacementMethods, HandleExtremeInput) {
   const LitHall hall(make_box_room(1), kHallLattice_m);
   const Eigen::Index points = hall.light->points();
   const LightingGoal uniform{Eigen::VectorXd::Constant(points, 200), {}};
@@ -142,7 +142,7 @@ TEST(PlacementMethods, TakeHostileInput) {
       }
 }
 
-TEST(PlacementMethods, SayWhatIsWrong) {
+TEST(PlacementMethods, ReportInvalidInput) {
   const LitHall hall(make_box_room(1), 0.5);
   const Eigen::Index points = hall.light->points();
   const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -169,7 +169,7 @@ TEST(PlacementMethods, SayWhatIsWrong) {
   }
 }
 
-TEST(AnnealCandidates, NeverEndsWorseThanItBegan) {
+TEST(AnnealCandidates, NeverEndsWorseThanItStarted) {
   const LitHall hall(make_box_room(2), kHallLattice_m);
   const LightingGoal goal{Eigen::VectorXd::Constant(hall.light->points(), 200), {}};
   const PlacementProblem problem = problem_of(hall, goal);
@@ -192,7 +192,7 @@ TEST(AnnealCandidates, NeverEndsWorseThanItBegan) {
     }
 }
 
-TEST(CandidateLights, NearestIsWhatComparingAllGives) {
+TEST(CandidateLights, NearestMatchesAnExhaustiveComparison) {
   const LitHall hall(make_box_room(2), kHallLattice_m);
   LightingGoal goal{Eigen::VectorXd::Constant(hall.light->points(), 200), {}};
   goal.row_weight = Eigen::VectorXd::LinSpaced(goal.lux.size(), 0.5, 2);
@@ -216,14 +216,14 @@ TEST(CandidateLights, NearestIsWhatComparingAllGives) {
   for (std::size_t i = 0; i < found.size(); ++i) EXPECT_EQ(found[i], all[i].second) << i;
 }
 
-TEST(PlacementMethods, OfARigFileAreAllThere) {
+TEST(PlacementMethods, OfARigFileAllExist) {
   for (int i = 0; i <= static_cast<int>(PlacementSearch::gp16); ++i) {
     const char* name = name_of(static_cast<PlacementSearch>(i));
     EXPECT_NE(find_placement_method(name), nullptr) << name;
   }
 }
 
-TEST(NumberOfLights, IsTheFewestThatDoOrAfterWhichTwoMoreHardlyHelp) {
+TEST(NumberOfLights, IsTheFewestThatSufficeOrBeyondWhichMoreHardlyHelp) {
   const auto chosen = [](const std::vector<double>& errors, double coarse_error) {
     return fewest_worth_it(errors.size(), [&](std::size_t k) { return errors[k]; }, {1e-3, 0.1, coarse_error});
   };

@@ -51,7 +51,7 @@ INSTANTIATE_TEST_SUITE_P(Scales, PlacementStress,
                          testing::Values(std::pair{1.0, 0.0}, std::pair{1e-3, 0.0}, std::pair{1e3, 0.0},
                                          std::pair{1.0, 1e6}, std::pair{100.0, 1e6}));
 
-TEST(PlacementStress, PointsThatNothingReachesStayDarkAndTheOthersAreLit) {
+TEST(PlacementStress, UnreachablePointsStayDarkAndTheOthersAreLit) {
   const LitHall whole(make_box_room(1), 0.4);
   LitRoom room = make_box_room(1);
   room.receivers.resize(20);
@@ -72,7 +72,7 @@ TEST(PlacementStress, PointsThatNothingReachesStayDarkAndTheOthersAreLit) {
   EXPECT_TRUE(best.levels().allFinite());
 }
 
-TEST(PlacementStress, LightsOnSurfacesAndInPointsAreRefusedOrFinite) {
+TEST(PlacementStress, LightsOnSurfacesOrAtPointsAreRefusedOrFinite) {
   const LitHall hall(make_box_room(2), 0.5);
   Eigen::VectorXd lux;
   Eigen::MatrixXd slopes;

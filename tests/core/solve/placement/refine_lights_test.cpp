@@ -9,7 +9,7 @@ namespace luxrig {
 namespace {
 
 // Compared with central differences of the columns, without obstacles.
-TEST(SceneLight, DerivativesAreThoseOfItsColumns) {
+TEST(SceneLight, DerivativesMatchItsColumns) {
   LitRoom empty = make_box_room(1);
   empty.scene = {};
   const Mat3 turned = Eigen::AngleAxisd(0.4, Vec3(1, 2, 0.5).normalized()).toRotationMatrix();
@@ -35,7 +35,7 @@ TEST(SceneLight, DerivativesAreThoseOfItsColumns) {
   }
 }
 
-TEST(RefineLights, BringsLightsBackFromTwentyCentimetresWhereNothingShadows) {
+TEST(RefineLights, RestoresLightsShiftedByTwentyCentimetresWithoutShadows) {
   LitRoom empty = make_box_room(1);
   empty.scene = {};
   const LitHall hall(empty, 10);
@@ -54,7 +54,7 @@ TEST(RefineLights, BringsLightsBackFromTwentyCentimetresWhereNothingShadows) {
   }
 }
 
-TEST(RefineLights, NeverMakesTheErrorLargerAmongShadows) {
+TEST(RefineLights, NeverIncreasesTheErrorAmongShadows) {
   const LitHall hall(make_box_room(2), 10);
   const LightingGoal goal{Eigen::VectorXd::Constant(hall.light->points(), 300)};
   Random random(9);
@@ -70,7 +70,7 @@ TEST(RefineLights, NeverMakesTheErrorLargerAmongShadows) {
 }
 
 // Compared with levels solved again with each candidate added.
-TEST(ComplementSearch, GivesTheFallOfTheErrorOfEveryCandidateAndTheBestFirst) {
+TEST(ComplementSearch, RanksCandidatesByTheirErrorReduction) {
   const LitHall hall(make_box_room(1), 0.5);
   Random random(11);
   LightingGoal goal{Eigen::VectorXd(hall.light->points()), Eigen::VectorXd(hall.light->points())};
@@ -107,7 +107,7 @@ TEST(ComplementSearch, GivesTheFallOfTheErrorOfEveryCandidateAndTheBestFirst) {
 }
 
 // One pass over all lights also serves those left after some are removed: same result as a pass over these.
-TEST(ComplementSearch, AboutAllLightsKnowsTheBestForThoseThatAreLeft) {
+TEST(ComplementSearch, OverAllLightsServesAnyRemainingSubset) {
   const LitHall hall(make_box_room(1), 0.5);
   Random random(12);
   LightingGoal goal{Eigen::VectorXd(hall.light->points()), {}};

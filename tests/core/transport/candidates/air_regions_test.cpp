@@ -18,7 +18,7 @@ Scene empty_scene() {
   return scene;
 }
 
-TEST(AirRegions, TellInsideOfRandomTurnedBoxesFromOutside) {
+TEST(AirRegions, SeparateInsideFromOutsideOfRandomBoxes) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> unit(-1, 1);
   for (const double scale_m : {1e-3, 1.0, 1e4}) {
@@ -66,7 +66,7 @@ TEST(AirRegions, TellInsideOfRandomTurnedBoxesFromOutside) {
   }
 }
 
-TEST(AirRegions, DoNotJudgeByOpenSurfaces) {
+TEST(AirRegions, IgnoreOpenSurfaces) {
   Scene scene = empty_scene();
   add_box(scene, {0, 0, 0}, {1, 1, 1});
   scene.triangles.pop_back();
@@ -77,7 +77,7 @@ TEST(AirRegions, DoNotJudgeByOpenSurfaces) {
   EXPECT_EQ(regions.mark({0.5, 0.5, 0.5}), 0u);
 }
 
-TEST(AirRegions, HoldOnLatticesThatRunAlongFacesEdgesAndCorners) {
+TEST(AirRegions, AreCorrectOnLatticesAlongFacesEdgesAndCorners) {
   // Every vertical line through a point of the 0.5 m lattice meets edges or corners of these boxes.
   Scene scene = empty_scene();
   for (int x = 0; x < 3; ++x)
@@ -90,7 +90,7 @@ TEST(AirRegions, HoldOnLatticesThatRunAlongFacesEdgesAndCorners) {
     }
 }
 
-TEST(ReceiversAir, LeavesOutSolidsAndSealedRoomsButNotWhatADoorJoins) {
+TEST(ReceiversAir, ExcludesSolidsAndSealedRoomsButNotRoomsJoinedByADoor) {
   for (const bool door : {false, true}) {
     const Scene scene = two_rooms(0.7, door);
     const RayScene rays(scene);

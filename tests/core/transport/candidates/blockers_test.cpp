@@ -19,7 +19,7 @@ TEST(Blockers, JoinTheTwoTrianglesOfEachFaceOfABox) {
   }
 }
 
-TEST(Blockers, WhatTheyHideIsOccludedAtEveryScaleAndPlace) {
+TEST(Blockers, HiddenPointsAreOccludedAtEveryScaleAndPlace) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> unit(-1, 1);
   const auto vector = [&](double size) { return Vec3(size * Vec3(unit(random), unit(random), unit(random))); };

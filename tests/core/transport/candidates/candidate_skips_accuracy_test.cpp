@@ -14,7 +14,7 @@ using namespace candidate_skips_fixture;
 
 // Without a skip, different rays are cast, so reflected light is a new estimate. For two estimates, 95 % of differences
 // should be within twice their combined error.
-TEST(CandidateSkips, InAFurnishedRoomReflectedLightStaysWithinItsErrorWithoutAnyOfThem) {
+TEST(CandidateSkips, ChangeReflectedLightOnlyWithinItsError) {
   const LitRoom room = make_box_room();
   const RayScene rays(room.scene);
   const CandidateSet set = places_in(rays, 60);

@@ -13,7 +13,7 @@ namespace {
 
 using namespace candidate_skips_fixture;
 
-TEST(CandidateSkips, InFurnishedRoomsDirectLightIsTheSameBytesWithoutAnyOfThem) {
+TEST(CandidateSkips, ChangeNoByteOfDirectLight) {
   for (const LitRoom& room : {make_box_room(), make_eight_room_flat(), make_atrium()}) {
     const RayScene rays(room.scene);
     const CandidateSet set = places_in(rays, 400);

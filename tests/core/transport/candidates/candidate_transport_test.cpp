@@ -30,7 +30,7 @@ std::vector<float> evaluated(const RayScene& rays, std::span<const Receiver> rec
   return lux;
 }
 
-TEST(CandidateTransport, DirectLightIsWhatTheDirectEvaluatorSays) {
+TEST(CandidateTransport, DirectLightMatchesTheDirectEvaluator) {
   const Scene scene = two_rooms(0.7, true);
   const RayScene rays(scene);
   const auto receivers = receivers_in_two_rooms(30);
@@ -83,7 +83,7 @@ TEST(CandidateTransport, ExactSkipsSaveRaysAndChangeNoByte) {
   EXPECT_GT(s.pairs_blocked_in_groups, s.pairs_traced / 4);
 }
 
-TEST(CandidateTransport, ReachDropsWhatIsBelowItAndNothingElse) {
+TEST(CandidateTransport, ReachDropsOnlyEntriesBelowIt) {
   const Scene scene = two_rooms(0.7, true);
   const RayScene rays(scene);
   const auto receivers = receivers_in_two_rooms(20);
@@ -101,7 +101,7 @@ TEST(CandidateTransport, ReachDropsWhatIsBelowItAndNothingElse) {
   }
 }
 
-TEST(CandidateTransport, AddsUpToWhatAllLightTogether) {
+TEST(CandidateTransport, ColumnsAddUpToTheLightOfAll) {
   const Scene scene = two_rooms(0.6, true);
   const RayScene rays(scene);
   const auto receivers = receivers_in_two_rooms(20);
@@ -148,7 +148,7 @@ TEST(CandidateTransport, StopsAndReportsProgress) {
   EXPECT_EQ(stopped.error().cause, Cause::cancelled);
 }
 
-TEST(CandidateTransport, RefusesWhatItCannotWorkOn) {
+TEST(CandidateTransport, RefusesInvalidInput) {
   const Scene scene = two_rooms(0.6, false);
   const RayScene rays(scene);
   const auto receivers = receivers_in_two_rooms(3);

@@ -128,7 +128,7 @@ TEST(IndirectCandidates, CostGrowsLinearlyInCandidates) {
   EXPECT_LT(cost[1], cost[0]);
 }
 
-TEST(IndirectCandidates, InterpolatedColumnsAreWhatLookingGives) {
+TEST(IndirectCandidates, InterpolatedColumnsMatchTracedOnes) {
   const Scene scene = two_rooms(0.7, true);
   const RayScene rays(scene);
   const auto receivers = receivers_in_two_rooms(8);
@@ -162,7 +162,7 @@ TEST(IndirectCandidates, InterpolatedColumnsAreWhatLookingGives) {
   EXPECT_NEAR(sum, looked_sum, 0.005 * looked_sum);
 }
 
-TEST(IncrementalTransport, AColumnIsWhatTheEvaluatorsSay) {
+TEST(IncrementalTransport, AColumnMatchesTheEvaluators) {
   const Scene scene = two_rooms(0.7, true);
   const RayScene rays(scene);
   const auto receivers = receivers_in_two_rooms(15);

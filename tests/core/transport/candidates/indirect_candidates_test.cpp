@@ -33,7 +33,7 @@ TEST(IndirectCandidates, SendNothingThroughAClosedWall) {
   EXPECT_GT(inside_rooms, 1000);
 }
 
-TEST(IncrementalTransport, AMovedReceiverGetsTheRowThatItWouldHaveHadThere) {
+TEST(IncrementalTransport, AMovedReceiverGetsTheRowOfItsNewPlace) {
   const Scene scene = two_rooms(0.7, true);
   const RayScene rays(scene);
   auto receivers = receivers_in_two_rooms(9);
@@ -59,7 +59,7 @@ TEST(IncrementalTransport, AMovedReceiverGetsTheRowThatItWouldHaveHadThere) {
   EXPECT_FALSE(moved->move_receiver(0, {{0, 0, std::nan("")}, Vec3::UnitZ()}));
 }
 
-TEST(IncrementalTransport, AMovedTableIsAskedAboutOnlyWhereItMattersForDirectLight) {
+TEST(IncrementalTransport, AMovedTableCastsRaysOnlyWhereItAffectsDirectLight) {
   const Scene before = two_rooms(0.7, true);
   Scene after = before;
   const std::size_t table = after.vertices_m.size() - 8;
@@ -85,7 +85,7 @@ TEST(IncrementalTransport, AMovedTableIsAskedAboutOnlyWhereItMattersForDirectLig
   EXPECT_LT(*cast * 4, want.rays);
 }
 
-TEST(IncrementalTransport, RefusesAndStops) {
+TEST(IncrementalTransport, RefusesInvalidInputAndStopsWhenAsked) {
   const Scene scene = two_rooms(0.7, false);
   const RayScene rays(scene);
   const auto receivers = receivers_in_two_rooms(3);

@@ -18,7 +18,7 @@ std::vector<Vec3> random_places(const Vec3& low_m, const Vec3& high_m, std::size
   return places_m;
 }
 
-TEST(InterpolationNodes, GiveBackWhatIsLinearInThePlace) {
+TEST(InterpolationNodes, ReproduceLinearFunctionsOfPlace) {
   const Scene scene = two_rooms(0.5, true);
   const RayScene rays(scene);
   const auto linear = [](const Vec3& at_m) { return 5 + at_m.dot(Vec3(0.3, -0.7, 0.2)); };
@@ -45,7 +45,7 @@ TEST(InterpolationNodes, GiveBackWhatIsLinearInThePlace) {
   EXPECT_GT(interpolated, places_m.size() / 7 * 8 / 10);  // all but the corners
 }
 
-TEST(InterpolationNodes, GiveTheSlopeOfWhatIsLinearInThePlace) {
+TEST(InterpolationNodes, ReproduceSlopesOfLinearFunctions) {
   const Scene scene = two_rooms(0.5, true);
   const RayScene rays(scene);
   const Vec3 slope(0.3, -0.7, 0.2);
@@ -69,7 +69,7 @@ TEST(InterpolationNodes, GiveTheSlopeOfWhatIsLinearInThePlace) {
   EXPECT_GE(near, all * 9 / 10);
 }
 
-TEST(InterpolationNodes, DoNotSpeakThroughAWallNorForThemselvesWhenLeftOut) {
+TEST(InterpolationNodes, DoNotInterpolateThroughWallsOrFromAnExcludedNode) {
   const Scene scene = two_rooms(0.5, false);
   const RayScene rays(scene);
   const auto places_m = random_places({0.05, 0.05, 0.9}, {8.1, 2.95, 2.45}, 3000);
@@ -89,7 +89,7 @@ TEST(InterpolationNodes, DoNotSpeakThroughAWallNorForThemselvesWhenLeftOut) {
   }
 }
 
-TEST(InterpolationNodes, AreAsFineAsAllowedAndBearOddInput) {
+TEST(InterpolationNodes, AreAsFineAsAllowedAndTolerateOddInput) {
   const auto places_m = random_places({-1, -1, 0}, {1, 1, 0}, 900);  // a plane
   const std::vector<std::uint8_t> usable(places_m.size(), 1), none(places_m.size(), 0);
   const double step_m = InterpolationNodes::step_for(places_m, usable, 100);
@@ -116,7 +116,7 @@ TEST(InterpolationNodes, AreAsFineAsAllowedAndBearOddInput) {
 }
 
 // Regression: at the full requested density no node had a neighbour within reach, so every place stayed dark.
-TEST(InterpolationNodes, AreNoFinerThanLetsEveryPlaceBeOne) {
+TEST(InterpolationNodes, LeaveNeighboursInReachAtTheFinestStep) {
   std::vector<Vec3> places_m;
   for (int x = 0; x < 12; ++x)
     for (int y = 0; y < 9; ++y) places_m.emplace_back(0.2 * x, 0.2 * y, 1.5);

@@ -38,7 +38,7 @@ TEST(ReflectedField, AgreesWithRaysFromThePlaceItself) {
   EXPECT_LE(std::sqrt(off / all), 0.05);
 }
 
-TEST(ReflectedField, SaysNothingBesideItsNodesAndOfNone) {
+TEST(ReflectedField, AddsNothingAwayFromItsNodesOrWithoutAny) {
   const FieldOfTwoRooms two;
   Eigen::VectorXd lux = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(two.receivers.size()));
   EXPECT_FALSE(two.field(200).add({50, 50, 50}, lux, nullptr));

@@ -10,7 +10,7 @@
 namespace luxrig {
 namespace {
 
-TEST(SurfaceCells, AWallPartsTheFloorUnderIt) {
+TEST(SurfaceCells, AWallSeparatesTheFloorBeneathIt) {
   const Scene scene = two_rooms(0.5, false);
   const RayScene rays(scene);
   std::mt19937 random(2);
@@ -39,7 +39,7 @@ TEST(SurfaceCells, AWallPartsTheFloorUnderIt) {
   }
 }
 
-TEST(SurfaceCells, TheSidesOfAThinThingAreApart) {
+TEST(SurfaceCells, TheSidesOfAThinObjectAreSeparate) {
   const Scene scene = two_rooms(0.5, true);
   const RayScene rays(scene);
   SurfaceCells cells(scene, rays, 0.5, Vec3::Constant(0.3));

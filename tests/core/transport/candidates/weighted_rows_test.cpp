@@ -11,7 +11,7 @@
 namespace luxrig {
 namespace {
 
-TEST(WeightedRows, AddUpAsOneByOneWould) {
+TEST(WeightedRows, AddUpLikeRowsOneByOne) {
   std::mt19937 random(5);
   std::uniform_real_distribution<float> unit(-1, 1);
   for (const std::size_t columns : {0u, 16u, 48u, 64u, 80u, 304u}) {
@@ -34,7 +34,7 @@ TEST(WeightedRows, AddUpAsOneByOneWould) {
   }
 }
 
-TEST(DirectionGuide, DrawsWithTheDensityThatItStates) {
+TEST(DirectionGuide, SamplesWithItsStatedDensity) {
   for (const bool filled : {false, true}) {
     DirectionGuide guide;
     if (filled) {
@@ -67,7 +67,7 @@ TEST(DirectionGuide, DrawsWithTheDensityThatItStates) {
   }
 }
 
-TEST(ErrorHistogram, GivesTheMedianToThreePercent) {
+TEST(ErrorHistogram, GivesTheMedianWithinThreePercent) {
   std::mt19937 random(9);
   std::lognormal_distribution<double> errors(-4, 1.5);
   ErrorHistogram all, part;

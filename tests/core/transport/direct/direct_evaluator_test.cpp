@@ -72,7 +72,7 @@ TEST(DirectEvaluator, MatchesTheDistanceLawAtAThousandRandomConfigurations) {
   EXPECT_GT(lit, 150);
 }
 
-TEST(DirectEvaluator, AWallBetweenCastsItsShadowAndOneBesideDoesNot) {
+TEST(DirectEvaluator, AWallCastsAShadowOnlyBehindIt) {
   const std::vector<Emitter> lamp = {{make_isotropic(4 * kPi), {Mat3::Identity(), {2, 0, 0}}}};
   const std::vector<Receiver> receivers = {{{0, 0, 0}, Vec3::UnitX()},    // behind the wall
                                            {{0, 5, 0}, Vec3::UnitX()},    // the line to the lamp passes beside the wall
@@ -88,7 +88,7 @@ TEST(DirectEvaluator, AWallBetweenCastsItsShadowAndOneBesideDoesNot) {
   EXPECT_TRUE(matrix.replicates.empty());
 }
 
-TEST(DirectEvaluator, WhatCannotContributeCastsNoRay) {
+TEST(DirectEvaluator, LampsThatCannotContributeCastNoRay) {
   const Scene wall = wall_at_x(100, 0.5);
   const auto spot = make_spot(1000, rad_from_deg(20), rad_from_deg(30));
   const Receiver up{{0, 0, 0}, Vec3::UnitZ()};
@@ -143,7 +143,7 @@ TEST(DirectEvaluator, TheSmallestDistanceFollowsFromTheRoundingOfCoordinates) {
   EXPECT_FALSE(lux_at(Vec3::Constant(1e6), 1e-5).has_value());
 }
 
-TEST(DirectEvaluator, RefusesWhatIsNotFiniteAndSaysWhich) {
+TEST(DirectEvaluator, RefusesNonFiniteInputByName) {
   const RayScene empty{Scene{}};
   const auto evaluator = make_direct_evaluator(empty);
   const Receiver good{{0, 0, 0}, Vec3::UnitZ()};

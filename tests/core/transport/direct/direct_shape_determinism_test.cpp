@@ -10,7 +10,7 @@ namespace {
 
 using namespace direct_shape_fixture;
 
-TEST(DirectShapeLight, SameBytesForAnyNumberOfThreadsAndOtherSeedsGiveOtherSamples) {
+TEST(DirectShapeLight, IsTheSameForAnyNumberOfThreadsButNotForOtherSeeds) {
   HalfHidden half(0.1);
   for (int i = 0; i < 20; ++i) half.receivers.push_back({{0.1 * i, 0.05 * i, 0}, Vec3::UnitZ()});
   half.emitters.push_back({nullptr, {}, {}, Vec3::Ones(), std::make_shared<UniformSky>(0.1)});

@@ -27,7 +27,7 @@ double standard_error(const DirectLight& light, Eigen::Index r, Eigen::Index e) 
   return std::sqrt(sum2 / (n * (n - 1)));
 }
 
-TEST(DirectShapeLight, ALampFlushWithTheCeilingOfAnEmptyRoomIsExactWithoutARay) {
+TEST(DirectShapeLight, ALampFlushWithTheCeilingIsExactWithoutRays) {
   for (const int split : {1, 8}) {
     Builder room;
     room.box({-2, -1.5, 0}, {2, 1.5, 2.7}, split);
@@ -80,7 +80,7 @@ TEST(DirectShapeLight, PendantsOfAnyKindInAnEmptyRoomNeedNoRay) {
     }
 }
 
-TEST(DirectShapeLight, APartlyHiddenLampIsSampledToTheWantedErrorWithAnHonestErrorBar) {
+TEST(DirectShapeLight, APartlyHiddenLampIsSampledToTheWantedErrorHonestly) {
   std::uint64_t rays_before = 0;
   for (const double wanted : {0.03, 0.01, 0.003}) {
     int within_two = 0, runs = 0;
@@ -123,7 +123,7 @@ TEST(DirectShapeLight, AWhollyHiddenLampIsProvenDarkWithARayPerCorner) {
   }
 }
 
-TEST(DirectShapeLight, AWallWithAHoleIsNotTakenForAWhole) {
+TEST(DirectShapeLight, AWallWithAHoleIsNotTakenAsSolid) {
   // All four corners of the lamp are behind the wall; light comes through a hole in its middle.
   Builder wall;
   wall.quad({-4, -4, 1}, {-0.1, -4, 1}, {-0.1, 4, 1}, {-4, 4, 1});
@@ -138,7 +138,7 @@ TEST(DirectShapeLight, AWallWithAHoleIsNotTakenForAWhole) {
   EXPECT_LE(light.relative_error, 0.01);
 }
 
-TEST(DirectShapeLight, WhatCannotContributeCastsNoRay) {
+TEST(DirectShapeLight, LampsThatCannotContributeCastNoRay) {
   Builder clutter;  // in the way of every lamp
   clutter.quad({-0.3, -0.3, 1}, {0.3, -0.3, 1}, {0.3, 0.3, 1}, {-0.3, 0.3, 1});
   clutter.quad({-0.3, -0.3, -1}, {0.3, -0.3, -1}, {0.3, 0.3, -1}, {-0.3, 0.3, -1});
@@ -183,7 +183,7 @@ TEST(DirectShapeLight, LevelsSteerTheEffort) {
   EXPECT_NEAR(alone.lux_per_level(0, 0), outshone.lux_per_level(0, 0), 4 * standard_error(outshone, 0, 0));
 }
 
-TEST(DirectShapeLight, NothingComesThroughAWallOfFifteenCentimetresBetweenClosedRooms) {
+TEST(DirectShapeLight, NoLightPassesAWallBetweenClosedRooms) {
   Builder rooms;
   rooms.box({0, 0, 0}, {4, 3, 2.7}, 2);
   rooms.box({4.15, 0, 0}, {8, 3, 2.7}, 2);
@@ -207,7 +207,7 @@ TEST(DirectShapeLight, NothingComesThroughAWallOfFifteenCentimetresBetweenClosed
   EXPECT_EQ(light.lux_per_level.maxCoeff(), 0);
 }
 
-TEST(DirectShapeLight, AnUnobstructedSkyLightsByItsOwnFigureAndTiltedPlanesByWhatTheySeeOfIt) {
+TEST(DirectShapeLight, AnUnobstructedSkyLightsPlanesByTheShareTheySee) {
   const std::vector<Emitter> sky = {{nullptr, {}, {}, Vec3::Ones(), std::make_shared<UniformSky>(1000)}};
   for (const bool with_ground : {false, true}) {
     Builder ground;
@@ -228,7 +228,7 @@ TEST(DirectShapeLight, AnUnobstructedSkyLightsByItsOwnFigureAndTiltedPlanesByWha
   }
 }
 
-TEST(DirectShapeLight, DaylightThroughAnOpeningIsTheOpeningsConfigurationFactor) {
+TEST(DirectShapeLight, DaylightThroughAnOpeningMatchesItsConfigurationFactor) {
   // A closed room with a skylight of 1 m × 0.5 m in its roof, and one with a window in a wall.
   Builder roof;
   roof.quad({-2, -2, 3}, {-0.5, -2, 3}, {-0.5, 2, 3}, {-2, 2, 3});
@@ -257,7 +257,7 @@ TEST(DirectShapeLight, DaylightThroughAnOpeningIsTheOpeningsConfigurationFactor)
   }
 }
 
-TEST(DirectShapeLight, GivesUpAtTheMostRaysAndSaysWhatErrorItHas) {
+TEST(DirectShapeLight, StopsAtTheMaximumOfRaysAndReportsItsError) {
   const HalfHidden half(0.1);
   EvaluateOptions options;
   options.wanted_relative_error = 1e-7;
@@ -281,7 +281,7 @@ TEST(DirectShapeLight, StopsWhenAskedWhileSampling) {
   EXPECT_EQ(result.error().cause, Cause::cancelled);
 }
 
-TEST(DirectShapeLight, TheEvaluatorGivesColoursThatAddUpToLuminance) {
+TEST(DirectShapeLight, ColoursAddUpToTheLuminance) {
   HalfHidden half(0.1);
   half.emitters[0].colour_rgb = {1.2, 1, 0.411};
   half.emitters[0].colour_rgb /= half.emitters[0].colour_rgb.dot(Vec3(0.2126, 0.7152, 0.0722));

@@ -47,7 +47,7 @@ std::vector<SurfacePoint> points_in_hall(int count) {
   return points;
 }
 
-TEST(LampCells, EveryLampThatLightsCanBeChosenAndChancesAddUpToOne) {
+TEST(LampCells, EveryLitLampCanBeChosenAndProbabilitiesAddUpToOne) {
   const HallOfSpots hall(600);
   const EmitterSampler lamps(hall.spots, hall.levels, kHall_m);
   EmitterSampler::Weights weights;
@@ -70,7 +70,7 @@ TEST(LampCells, EveryLampThatLightsCanBeChosenAndChancesAddUpToOne) {
 }
 
 /// Σ lux / density over evenly spaced choices is the light of all lamps, those weighed one by one and the rest.
-TEST(LampCells, ChoicesGiveTheLightOfAllLamps) {
+TEST(LampCells, ChoicesSumToTheLightOfAllLamps) {
   const HallOfSpots hall(300);
   const EmitterSampler lamps(hall.spots, hall.levels, kHall_m);
   EmitterSampler::Weights weights;
@@ -93,7 +93,7 @@ TEST(LampCells, ChoicesGiveTheLightOfAllLamps) {
   }
 }
 
-TEST(LampCells, FewLampsAndPointsOutsideAreWeighedAsEver) {
+TEST(LampCells, FewLampsAndPointsOutsideWeighEveryLamp) {
   const HallOfSpots few(80), many(600);
   EmitterSampler::Weights weights;
   const EmitterSampler of_few(few.spots, {}, kHall_m), of_many(many.spots, {}, kHall_m);

@@ -32,7 +32,7 @@ class Power final : public IntensityDistribution {
   double n_;
 };
 
-TEST(ShapeLight, DiffuseRectanglesFollowTheContourIntegralWhereverTheReceiverIs) {
+TEST(ShapeLight, DiffuseRectanglesFollowTheContourIntegral) {
   Random random(1);
   int lit = 0;
   double evaluations = 0;
@@ -65,7 +65,7 @@ TEST(ShapeLight, DiffuseDisksFollowTheClosedFormForAFacingReceiver) {
   }
 }
 
-TEST(ShapeLight, DiffuseSpheresFollowTheClosedFormAlsoWhenPartlyBelowTheHorizon) {
+TEST(ShapeLight, DiffuseSpheresFollowTheClosedFormEvenAcrossTheHorizon) {
   Random random(3);
   int partly = 0;
   for (int i = 0; i < 2000; ++i) {
@@ -158,7 +158,7 @@ TEST(ShapeLight, TheEstimatedErrorBoundsTheTrueOne) {
   EXPECT_LE(beyond, lit / 100);
 }
 
-TEST(ShapeLight, AtFiveTimesItsLargestSizeADiffuserIsAPointToOnePercent) {
+TEST(ShapeLight, ADiffuserIsAPointWithinOnePercentAtFiveTimesItsSize) {
   // The five-times rule of photometry: on the axis of a disk, point / exact = 1 + (r/d)².
   const Vec3 up = Vec3::UnitZ();
   const auto excess = [&](const LuminousShape& shape, const Vec3& p) {
@@ -176,7 +176,7 @@ TEST(ShapeLight, AtFiveTimesItsLargestSizeADiffuserIsAPointToOnePercent) {
   }
 }
 
-TEST(ShapeLight, ShapesThatLookLikePointsGetTheDistanceLaw) {
+TEST(ShapeLight, TinyShapesFollowTheDistanceLaw) {
   Random random(6);
   for (int i = 0; i < 200; ++i) {
     const Vec3 p = random.direction(), n = random.direction();
@@ -191,7 +191,7 @@ TEST(ShapeLight, ShapesThatLookLikePointsGetTheDistanceLaw) {
   EXPECT_EQ(shape_light({0, 0, -1}, Vec3::UnitZ(), {diffuser(1), {}, disk(1e-9)}).evaluations, 1u);
 }
 
-TEST(ShapeLight, WithinInThePlaneOrBelowTheHorizonThereIsNoLight) {
+TEST(ShapeLight, NoLightArrivesWithinInThePlaneOrBelowTheHorizon) {
   const Vec3 up = Vec3::UnitZ();
   const auto lux = [](const LuminousShape& shape, const Vec3& p, const Vec3& n) {
     const auto light = shape_light(p, n, {make_isotropic(1000), {}, shape});
@@ -223,7 +223,7 @@ TEST(ShapeLight, NearTheSurfaceADiffuserGivesPiTimesItsLuminance) {
   }
 }
 
-TEST(ShapeLight, AllThatAShapeSendsArrivesOnASphereAroundIt) {
+TEST(ShapeLight, AllFluxOfAShapeArrivesOnASphereAroundIt) {
   // Flux through a sphere around the lamp, by a product rule over directions, equals the lamp's flux for any shape.
   const Intensity intensity = std::make_shared<Power>(4);
   const Vec3 turn(0.3, -0.2, 0.5);
@@ -243,7 +243,7 @@ TEST(ShapeLight, AllThatAShapeSendsArrivesOnASphereAroundIt) {
   }
 }
 
-TEST(ShapeLight, AnySizeAndPlaceGivesAFiniteAnswerInBoundedWork) {
+TEST(ShapeLight, AnySizeAndPlaceGivesAFiniteResultInBoundedWork) {
   Random random(8);
   const Intensity intensities[] = {diffuser(100), make_spot(1000, 0.02, 0.05), make_isotropic(1000)};
   for (int i = 0; i < 2000; ++i) {

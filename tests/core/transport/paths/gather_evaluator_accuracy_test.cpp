@@ -33,7 +33,7 @@ TEST(GatherEvaluator, AgreesWithPathsInTheFlatForFarFewerRays) {
   EXPECT_LT(gather.rays, path.rays);
 }
 
-TEST(GatherEvaluator, SmallErrorsAreReachedAndStayCheaperThanPaths) {
+TEST(GatherEvaluator, ReachesSmallErrorsMoreCheaplyThanPaths) {
   // Records have their own noise, which more paths ending in them do not reduce.
   const LitRoom room = make_box_room();
   const RayScene rays(room.scene);
@@ -45,7 +45,7 @@ TEST(GatherEvaluator, SmallErrorsAreReachedAndStayCheaperThanPaths) {
   EXPECT_LT(apart(gather.lux(levels), path.lux(levels)), 0.01) << "0.004 each, and 0.003 of bias";
 }
 
-TEST(GatherEvaluator, ARoomWhereNobodyCanShareEnds) {
+TEST(GatherEvaluator, EndsInARoomWhereNoPointCanShare) {
   // All walls varnished, the lamp in a corner: no record can be used. With this seed all points go on alone after 14
   // million rays.
   Scene box = make_cube(4, 0.3);
@@ -61,7 +61,7 @@ TEST(GatherEvaluator, ARoomWhereNobodyCanShareEnds) {
   EXPECT_TRUE((gather.lux_per_level.array() > 0).all());
 }
 
-TEST(GatherEvaluator, AnRmsErrorIsReachedAndTakesFewerRaysThanTheSameErrorOfEachReceiver) {
+TEST(GatherEvaluator, ReachesAnRmsErrorWithFewerRaysThanThatErrorEverywhere) {
   const LitRoom flat = make_eight_room_flat();
   const RayScene rays(flat.scene);
   // Sampling stops when 2.5 standard errors are within the wanted error at each receiver.
@@ -80,7 +80,7 @@ TEST(GatherEvaluator, AnRmsErrorIsReachedAndTakesFewerRaysThanTheSameErrorOfEach
 
 // Records do badly in a sphere of high reflectance, where light comes from many bounces, and on a glossy floor. There
 // the wanted error was once missed silently. It must be reached, and the stated error must hold.
-TEST(GatherEvaluator, AWishIsReachedWhereRecordsLose) {
+TEST(GatherEvaluator, ReachesTheWantedErrorWhereRecordsPerformBadly) {
   Scene sphere = make_icosphere(2, 4, 0.9);
   std::vector<Receiver> receivers;
   for (const WallPoint& p : spread_over_walls(sphere, 40, Vec3::Zero())) receivers.push_back({p.position_m, p.normal});
@@ -104,7 +104,7 @@ TEST(GatherEvaluator, AWishIsReachedWhereRecordsLose) {
   EXPECT_LE(EvaluateOptions::kStopMargin * gather.relative_error, 0.05 * 1.0001);
 }
 
-TEST(PathEvaluator, AnRmsErrorIsReachedAndMustNotBeNegative) {
+TEST(PathEvaluator, ReachesAnRmsErrorAndRefusesANegativeOne) {
   const LitRoom room = make_box_room();
   const RayScene rays(room.scene);
   EvaluateOptions options = within(1);

@@ -11,7 +11,7 @@ namespace {
 
 using namespace gather_evaluator_fixture;
 
-TEST(GatherEvaluator, NumberOfThreadsChangesNoBit) {
+TEST(GatherEvaluator, IsTheSameForAnyNumberOfThreads) {
   const LitRoom room = make_box_room();
   const RayScene rays(room.scene);
   EvaluateOptions options = within(0.1);

@@ -23,7 +23,7 @@ TEST(GatherEvaluator, FewReceiversFallBackToTheirOwnPaths) {
 }
 
 // Few paths find light that passes doors; at many points none did. Their error bars were then zero or nearly zero.
-TEST(GatherEvaluator, WhatALampSendsIntoOtherRoomsIsNoBetterKnownThanItIsFound) {
+TEST(GatherEvaluator, StatesHonestErrorsForLightIntoOtherRooms) {
   LitRoom flat = make_eight_room_flat();
   flat.emitters = {flat.emitters[2]};
   std::vector<Receiver> receivers;
@@ -53,7 +53,7 @@ TEST(GatherEvaluator, WhatALampSendsIntoOtherRoomsIsNoBetterKnownThanItIsFound) 
 }
 
 // Where paths find no light, they go on until darkness is known to the wanted error.
-TEST(PathEvaluator, APointInAClosedBoxIsDarkToTheWantedError) {
+TEST(PathEvaluator, APointInAClosedBoxIsDarkWithinTheWantedError) {
   Scene scene;
   scene.materials.resize(1);
   scene.materials[0].reflectance_rgb.setConstant(0.5);
@@ -68,7 +68,7 @@ TEST(PathEvaluator, APointInAClosedBoxIsDarkToTheWantedError) {
 }
 
 // The noise of the receivers' own paths may be below the error they share through records. That error has to fall, too.
-TEST(GatherEvaluator, AFineRmsErrorContainsWhatRecordsAreOffBy) {
+TEST(GatherEvaluator, AFineRmsErrorIncludesTheErrorOfRecords) {
   const LitRoom room = make_box_room();
   const RayScene rays(room.scene);
   for (const double wanted : {0.004, 0.002}) {
@@ -115,7 +115,7 @@ TEST(PathEvaluator, EachPrimaryFollowsItsOwnReflectance) {
 
 /// A closed room keeps all light that its walls do not absorb, glossy or not. The albedo is a(θ) = Es + ρ (1 - Es) with
 /// ρ of the body alone. So the mean over the walls lies between matt rooms of the lowest and the highest albedo.
-TEST(PathEvaluator, AGlossyRoomKeepsTheLightThatItsWallsReflect) {
+TEST(PathEvaluator, AGlossyRoomKeepsAllReflectedLight) {
   Scene cube = make_cube(2, 0.5);
   std::vector<Receiver> receivers;
   for (const WallPoint& p : cube_wall_grid(2, 8)) receivers.push_back({p.position_m, p.normal});
@@ -135,7 +135,7 @@ TEST(PathEvaluator, AGlossyRoomKeepsTheLightThatItsWallsReflect) {
 }
 
 /// A luminaire with size is reflected like the point lamps that would fill it.
-TEST(PathEvaluator, APanelReflectsAsManyPointsInItsPlaceWould) {
+TEST(PathEvaluator, APanelIsReflectedLikeManyPointsInItsPlace) {
   const RayScene rays(make_cube(3, 0.6));
   Emitter panel = bulb(1000, {0.2, 0.1, 1.2});
   panel.intensity = make_lambertian(1000);

@@ -22,7 +22,7 @@ std::vector<Vertex> scattered(std::mt19937_64& random, std::size_t count, const 
   return places;
 }
 
-TEST(IrradianceRecords, TheNearestIsThatOfASearchThroughAll) {
+TEST(IrradianceRecords, NearestMatchesAnExhaustiveSearch) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> unit(0, 1);
   for (const double scale : {1e-3, 1.0, 1e3}) {
@@ -52,7 +52,7 @@ TEST(IrradianceRecords, TheNearestIsThatOfASearchThroughAll) {
   }
 }
 
-TEST(IrradianceRecords, ThoseBesideEachOtherAreSoMutuallyAndLieAlikeInOnePlane) {
+TEST(IrradianceRecords, NeighboursAreMutualAndShareTheirPlane) {
   std::mt19937_64 random(2);
   const double apart_m = 3;
   std::vector<Vertex> places = scattered(random, 300, Vec3::Zero(), 1);
@@ -82,7 +82,7 @@ TEST(IrradianceRecords, ThoseBesideEachOtherAreSoMutuallyAndLieAlikeInOnePlane) 
   EXPECT_GT(pairs.size(), places.size()) << "one each at least, on average";
 }
 
-TEST(IrradianceRecords, TakesCoincidentCollinearAndFarPlaces) {
+TEST(IrradianceRecords, AcceptsCoincidentCollinearAndFarPlaces) {
   std::vector<std::uint32_t> beside;
   for (const double offset_m : {0.0, 1e7}) {
     for (const double step_m : {0.0, 1e-9, 1.0}) {
@@ -104,7 +104,7 @@ TEST(IrradianceRecords, TakesCoincidentCollinearAndFarPlaces) {
   EXPECT_FALSE(none.nearest(Vec3::Zero(), Vec3::UnitZ()));
 }
 
-TEST(IrradianceRecords, AFewFarOffDoNotMakeOneCellOfARoom) {
+TEST(IrradianceRecords, AFewOutliersDoNotMergeARoomIntoOneCell) {
   std::mt19937_64 random(4);
   std::uniform_real_distribution<double> unit(-1, 1);
   for (const double far_m : {10.0, 1e3, 1e4}) {

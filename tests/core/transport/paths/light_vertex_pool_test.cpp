@@ -44,7 +44,7 @@ TEST(LampGroups, SharesAddUpAndGroupsKeepTheFluxOfTheirLamps) {
   }
 }
 
-TEST(LampGroups, WeighingFindsEveryLampThatLights) {
+TEST(LampGroups, WeightsIncludeEveryLampThatLights) {
   // Spots whose beam just reaches or just misses a point. A weight of zero where there is light would cause bias.
   std::vector<Emitter> spots;
   for (int i = 0; i < 200; ++i) {
@@ -68,7 +68,7 @@ TEST(LampGroups, WeighingFindsEveryLampThatLights) {
   EXPECT_GT(lit, 100);
 }
 
-TEST(LightVertexPool, RefillsGoOnInTheSequenceAndKeepWholeNets) {
+TEST(LightVertexPool, RefillsContinueTheSequenceInWholeNets) {
   const RayScene rays(make_cube(2, 0.5));
   const auto bulbs = row_of_bulbs(2);
   const EmitterSampler lamps(bulbs, {}, rays.bounds_world_m());
@@ -90,7 +90,7 @@ TEST(LightVertexPool, RefillsGoOnInTheSequenceAndKeepWholeNets) {
     EXPECT_EQ(pool.hits(1)[i].position_world_m, lights.trace(1, second, i, weights, cost).position_world_m);
 }
 
-TEST(LightVertexPlan, StretchesHoldOnAverageWhatThePlanExpects) {
+TEST(LightVertexPlan, StretchesHoldTheExpectedHitsOnAverage) {
   const RayScene rays(make_cube(2, 0.5));
   const auto bulbs = row_of_bulbs(5);
   const EmitterSampler lamps(bulbs, {}, rays.bounds_world_m());
@@ -124,7 +124,7 @@ TEST(LightVertexPlan, StretchesHoldOnAverageWhatThePlanExpects) {
     EXPECT_NEAR(counts[g] / kDraws, plan.at_start[g] * kPaths, 0.05) << "group " << g;  // sd of a mean ≤ 0.008
 }
 
-TEST(LightVertexPlan, WithoutWeightsGoesByTheLight) {
+TEST(LightVertexPlan, FollowsTheFluxWithoutWeights) {
   const auto bulbs = row_of_bulbs(3);  // 100, 200, 300 lm
   const EmitterSampler lamps(bulbs);
   const LightVertexPlan plan = LightVertexPlan::of(lamps, std::vector<double>(3, 0.0), 1, 1);

@@ -45,7 +45,7 @@ std::vector<Receiver> below_the_lamps() {
   return receivers;
 }
 
-TEST(MirrorImages, PlacesAreDrawnAsOftenAsTheirDensitySays) {
+TEST(MirrorImages, PlacesAreSampledWithTheirStatedDensity) {
   const Scene scene = smooth_floor(0.5, 0.4);
   const RayScene rays(scene);
   const std::vector<Emitter> emitters = {bare_lamp({0.5, 0.2, 1.5}), bare_lamp({-1, -0.5, 2}, 0.2)};
@@ -75,7 +75,7 @@ TEST(MirrorImages, PlacesAreDrawnAsOftenAsTheirDensitySays) {
   }
 }
 
-TEST(MirrorImages, NoneWhereNothingIsSmooth) {
+TEST(MirrorImages, AreAbsentWhereNothingIsSmooth) {
   const std::vector<Emitter> emitters = {bare_lamp({0.5, 0.2, 1.5})};
   for (const auto& [specular, roughness] : {std::pair(0.0, 0.1), std::pair(0.5, 0.9)}) {
     const Scene scene = smooth_floor(specular, roughness);
@@ -88,7 +88,7 @@ TEST(MirrorImages, NoneWhereNothingIsSmooth) {
 class Mirror : public testing::TestWithParam<std::unique_ptr<Evaluator> (*)(const RayScene&)> {};
 
 // E = F(θ) I cosθ / d², with d the path length via the mirror. Facet slope α = 0.0025 blurs it far below the tolerance.
-TEST_P(Mirror, AFloorLikeAMirrorLightsAsTheImageOfItsLampWould) {
+TEST_P(Mirror, AMirrorFloorLightsLikeTheImageOfItsLamp) {
   const Vec3 at(0.6, -0.2, 1.7);
   const auto receivers = below_the_lamps();
   for (const double specular : {0.04, 0.5})

@@ -57,7 +57,7 @@ TEST(PathEvaluator, IntegratingSphereReflectsTheSameLightEverywhere) {
 }
 
 // Panels that fill their walls: every place gets M directly and M ρ/(1 − ρ) by reflection.
-TEST(PathEvaluator, LightOfPanelsFlushWithTheWallsIsReflectedInFull) {
+TEST(PathEvaluator, FlushWallPanelsAreReflectedInFull) {
   constexpr double kEdge_m = 3, kReflectance = 0.5, kExitance_lm_m2 = 100;
   const Scene scene = make_cube(kEdge_m, kReflectance);
   const RayScene rays(scene);
@@ -85,7 +85,7 @@ TEST(PathEvaluator, LightOfPanelsFlushWithTheWallsIsReflectedInFull) {
 }
 
 // All walls have the radiance ρE/π: every receiver inside gets ρE of reflected light in any direction.
-TEST(PathEvaluator, InAFurnaceEveryPlaceAndDirectionGetsTheSameReflectedLight) {
+TEST(PathEvaluator, AFurnaceGivesEqualReflectedLightEverywhere) {
   const double reflectance = 0.7;
   const Scene sphere = make_icosphere(2, 4, reflectance);
   const RayScene rays(sphere);
@@ -136,7 +136,7 @@ TEST(PathEvaluator, AgreesWithRadiosityAtPointsOfACube) {
   EXPECT_LT(chi2 / static_cast<double>(matrix.receivers()), 2.0);
 }
 
-TEST(PathEvaluator, ReportedErrorsHoldAsOftenAsTheyClaim) {
+TEST(PathEvaluator, ReportedErrorsHoldAsOftenAsStated) {
   const Scene cube = make_cube(2, 0.5);
   const RayScene rays(cube);
   // A narrow spot makes a small bright patch, a hard case for sampling. The receiver sees it but gets no direct light.
@@ -160,7 +160,7 @@ TEST(PathEvaluator, ReportedErrorsHoldAsOftenAsTheyClaim) {
   EXPECT_GE(within_four, 0.985 * trials);
 }
 
-TEST(PathEvaluator, TheMeanOverSeedsHasNoBias) {
+TEST(PathEvaluator, IsUnbiasedOverSeeds) {
   const Scene cube = make_cube(2, 0.8);
   const RayScene rays(cube);
   const Vec3 source_m(0.35, -0.2, 0.45);

@@ -11,7 +11,7 @@ namespace {
 
 using namespace path_evaluator_fixture;
 
-TEST(PathEvaluator, NumberOfThreadsAndRepetitionChangeNoBit) {
+TEST(PathEvaluator, IsTheSameForAnyNumberOfThreadsAndRepetition) {
   const RayScene rays(make_cube(2, 0.5));
   const auto receivers = receivers_on(make_cube(2, 0.5), 5);
   const std::vector<Emitter> emitters = {bulb_at(300, {-0.2, 0.1, 0.2}), bulb_at(200, {0.2, 0.4, 0.5})};

@@ -22,7 +22,7 @@ TEST(PathEvaluator, TheMatrixIsTheMeanOfItsReplicates) {
   EXPECT_LT((mean - matrix.lux_per_level).cwiseAbs().maxCoeff(), 1e-12 * mean.maxCoeff());
 }
 
-TEST(PathEvaluator, AskingForLessErrorCostsMoreRaysAndGivesIt) {
+TEST(PathEvaluator, ReachesASmallerErrorWithMoreRays) {
   const RayScene rays(make_cube(2, 0.5));
   const std::vector<Receiver> receivers = {{{0.1, 0.2, -1}, Vec3::UnitZ()}};
   const std::vector<Emitter> emitters = {
@@ -37,7 +37,7 @@ TEST(PathEvaluator, AskingForLessErrorCostsMoreRaysAndGivesIt) {
   }
 }
 
-TEST(PathEvaluator, ErrorsOfLampsThatAreOffCostNothing) {
+TEST(PathEvaluator, ErrorsOfUnlitLampsCostNothing) {
   const RayScene rays(make_cube(2, 0.5));
   const std::vector<Receiver> receivers = {{{0.1, 0.2, -1}, Vec3::UnitZ()}};
   const std::vector<Emitter> emitters = {
@@ -51,7 +51,7 @@ TEST(PathEvaluator, ErrorsOfLampsThatAreOffCostNothing) {
   EXPECT_GT(one.lux_per_level(0, 1), 0) << "its column is there all the same";
 }
 
-TEST(PathEvaluator, StopsAtMostRaysAndSaysWhatErrorItHas) {
+TEST(PathEvaluator, StopsAtTheMaximumOfRaysAndReportsItsError) {
   const RayScene rays(make_cube(2, 0.5));
   auto options = within(1e-5);
   options.max_rays = 200'000;
@@ -63,7 +63,7 @@ TEST(PathEvaluator, StopsAtMostRaysAndSaysWhatErrorItHas) {
   EXPECT_LT(matrix.relative_error, 0.05);
 }
 
-TEST(PathEvaluator, BlackRoomsCostNoPath) {
+TEST(PathEvaluator, BlackRoomsNeedNoPaths) {
   const RayScene rays(make_cube(2, 0));
   const auto matrix = path(rays, {{{0.1, 0.2, -1}, Vec3::UnitZ()}}, {bulb_at(300, {-0.2, 0.1, 0.2})}, within(1e-6));
   EXPECT_EQ(matrix.lux_per_level, matrix.direct_lux_per_level);

@@ -18,7 +18,7 @@ TEST(RecordBias, IsUnknownUntilEveryReplicateFoundLight) {
   EXPECT_NEAR(bias.believed()->mean, 0.1, 1e-9) << "certain: all replicates say the same";
 }
 
-TEST(RecordBias, WhatIsBelievedErrsLessThanWhatWasMeasuredAndNoMoreThanItSays) {
+TEST(RecordBias, BelievedErrsLessThanMeasuredAndAsStated) {
   // The records' error is about 0.01, the error of a check about 0.03. Over many trials the believed bias must be
   // closer than the measured one, and its stated error must be right.
   std::mt19937_64 random(5);

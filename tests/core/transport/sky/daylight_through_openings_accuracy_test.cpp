@@ -59,7 +59,7 @@ TEST_P(Daylit, AgreesWithPlainPathsWithinTheStatedErrors) {
 }
 
 // The sun through the window lights a patch of the floor. The room gets Φ / (1 - ρ) less the light that leaves.
-TEST(DaylightThroughOpenings, TheSunThroughAWindowLightsTheRoomAsPlainPathsFromItsPatchSay) {
+TEST(DaylightThroughOpenings, SunThroughAWindowMatchesPlainPathsFromItsPatch) {
   const RoomWithWindows room = with_a_small_window();
   const RayScene rays(room.scene());
   const auto matrix =
@@ -97,7 +97,7 @@ TEST(DaylightThroughOpenings, TheSunThroughAWindowLightsTheRoomAsPlainPathsFromI
   }
 }
 
-TEST(DaylightThroughOpenings, StatedErrorsHoldTheTruthAsOftenAsTheyShould) {
+TEST(DaylightThroughOpenings, StatedErrorsCoverTheTruthAsOftenAsTheyShould) {
   const RoomWithWindows room = with_a_small_window();
   const RayScene rays(room.scene());
   const auto evaluator = make_path_evaluator(rays);

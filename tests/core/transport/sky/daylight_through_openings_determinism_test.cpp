@@ -12,7 +12,7 @@ namespace {
 
 using namespace daylight_through_openings_fixture;
 
-TEST(DaylightThroughOpenings, SameBytesForAnyNumberOfThreads) {
+TEST(DaylightThroughOpenings, IsTheSameForAnyNumberOfThreads) {
   const RoomWithWindows room = with_windows_that_face_each_other();
   const RayScene rays(room.scene());
   const auto emitters = under(make_overcast_sky(10'000));

@@ -12,7 +12,7 @@ namespace {
 using namespace daylight_through_openings_fixture;
 
 // Sky component: ∫ L cosθ dω over the window, L = Lz (1 + 2 sin h) / 3, Lz = 9 E / 7π, by the midpoint rule.
-TEST(DaylightThroughOpenings, OvercastSkyThroughAWindowIsItsConfigurationFactor) {
+TEST(DaylightThroughOpenings, OvercastSkyMatchesTheConfigurationFactorOfAWindow) {
   RoomWithWindows room = with_a_small_window();
   room.reflectance = 0;
   room.ground_reflectance = 0;

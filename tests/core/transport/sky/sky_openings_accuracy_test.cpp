@@ -14,7 +14,7 @@ namespace {
 using namespace sky_openings_fixture;
 
 // ∫ cosθ dω over the openings: by their samples, and on a fine grid of directions.
-TEST(SkyOpenings, SamplesAndTheirDensityMeasureTheFormFactor) {
+TEST(SkyOpenings, SamplesWithTheirDensityGiveTheFormFactor) {
   SkyOpening other = window();
   other.centre_world_m = {-1.7, 0.2, 1.9};
   const SkyOpenings openings({window(), other}, 0);

@@ -15,7 +15,7 @@ namespace {
 
 using namespace sky_openings_fixture;
 
-TEST(SkyOpenings, LinesAndTheirDensityMeasureTheAreaThatFacesTheLight) {
+TEST(SkyOpenings, LinesWithTheirDensityGiveTheAreaFacingTheLight) {
   SkyOpening shifted = window();
   shifted.centre_world_m += Vec3(0.5, 1, 0.2);  // partly behind the first
   const SkyOpenings openings({window(), shifted}, 0);
@@ -41,7 +41,7 @@ TEST(SkyOpenings, LinesAndTheirDensityMeasureTheAreaThatFacesTheLight) {
   EXPECT_EQ(openings.whole_scene_share(Vec3::UnitY()), 1);
 }
 
-TEST(SkyOpenings, AreFoundToCentimetresInWallsThatAreTurnedAnyWay) {
+TEST(SkyOpenings, AreFoundToCentimetresInRotatedWalls) {
   RoomWithWindows room;
   room.near_window_m = {1.1, 2.3, 1.0, 2.0};
   for (const double turned_rad : {0.0, 0.4, 2.0})
@@ -61,7 +61,7 @@ TEST(SkyOpenings, AreFoundToCentimetresInWallsThatAreTurnedAnyWay) {
     }
 }
 
-TEST(SkyOpenings, TwoWindowsAndASkylightAreFoundEachByItself) {
+TEST(SkyOpenings, TwoWindowsAndASkylightAreFoundSeparately) {
   RoomWithWindows room;
   room.near_window_m = {1, 3, 1, 2};
   room.far_window_m = {0.5, 1.5, 1.2, 2.4};
@@ -78,7 +78,7 @@ TEST(SkyOpenings, TwoWindowsAndASkylightAreFoundEachByItself) {
   }
 }
 
-TEST(SkyOpenings, NoneWhereThereIsNothingToGainAndNoRayWithoutASky) {
+TEST(SkyOpenings, AreAbsentWithoutBenefitAndCostNoRayWithoutASky) {
   RoomWithWindows room;
   EXPECT_TRUE(found(room).empty());  // closed
   room.roof = false;
@@ -97,7 +97,7 @@ TEST(SkyOpenings, NoneWhereThereIsNothingToGainAndNoRayWithoutASky) {
   EXPECT_EQ(rays, 0u);
 }
 
-TEST(SkyOpenings, ASunHasOneDirectionAndASkyHasNot) {
+TEST(SkyOpenings, ASunHasASingleDirectionButASkyDoesNot) {
   const Vec3 towards = Vec3(0.3, -0.5, 0.6).normalized();
   const auto only = only_direction(*make_sun(towards, 50'000));
   ASSERT_TRUE(only.has_value());

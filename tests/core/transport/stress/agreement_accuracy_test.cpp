@@ -63,7 +63,7 @@ HostileScene cluttered_room(std::uint64_t seed) {
   return made;
 }
 
-TEST(Agreement, OfPathWithABruteForcePathTracerIsWithinBothTheirErrors) {
+TEST(Agreement, OfPathsWithABruteForceTracerIsWithinBothErrors) {
   constexpr int kPaths = 20'000;
   int beyond_two = 0, count = 0;
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {

@@ -45,7 +45,7 @@ void expect_sound(const TransportMatrix& matrix, const HostileScene& made, const
 class HostileShare : public testing::TestWithParam<int> {};
 INSTANTIATE_TEST_SUITE_P(OfTen, HostileShare, testing::Range(0, 10));
 
-TEST_P(HostileShare, OfScenesGivesNoNaNNothingNegativeAndNothingInfinite) {
+TEST_P(HostileShare, OfScenesGivesNoNaNNegativeOrInfiniteLight) {
   if (kScenes < 1000) std::cout << kScenes << " of 1000 scenes, as sanitizers slow them\n";
   int asked = 0, refused = 0;
   for (int i = 0; i < kScenes; ++i) {

@@ -35,7 +35,7 @@ TEST(ArtnetCodec, WritesArtDmxAsPublished) {
 
 TEST(ArtnetCodec, WritesArtPollAsPublished) { EXPECT_EQ(encode_poll(), from_hex("4172742d4e657400 0020 000e 02 00")); }
 
-TEST(ArtnetCodec, ReadsBackWhatItWrites) {
+TEST(ArtnetCodec, RoundTrips) {
   const Dmx packet{9, 0, 0x1234, {1, 2, 3, 4}};
   const auto back = decode_dmx(encode(packet));
   ASSERT_TRUE(back);
@@ -44,7 +44,7 @@ TEST(ArtnetCodec, ReadsBackWhatItWrites) {
   EXPECT_EQ(back->slots, packet.slots);
 }
 
-TEST(ArtnetCodec, IgnoresBytesAfterTheSlotsAndTakesLaterVersions) {
+TEST(ArtnetCodec, IgnoresBytesAfterTheSlotsAndAcceptsLaterVersions) {
   Bytes bytes = encode(Dmx{9, 0, 0x1234, {1, 2, 3, 4}});
   bytes.push_back(99);
   bytes[10] = 1;  // version 270
@@ -59,7 +59,7 @@ TEST(ArtnetCodec, IgnoresBytesAfterTheSlotsAndTakesLaterVersions) {
   EXPECT_FALSE(decode_dmx(bytes)) << "a slot is missing";
 }
 
-TEST(ArtnetCodec, ReadsWhichUniversesANodePutsOut) {
+TEST(ArtnetCodec, ReadsTheUniversesThatANodeOutputs) {
   const auto reply = decode_poll_reply(reply_bytes());
   ASSERT_TRUE(reply);
   EXPECT_EQ(reply->short_name, "Node");
@@ -70,7 +70,7 @@ TEST(ArtnetCodec, ReadsWhichUniversesANodePutsOut) {
   EXPECT_EQ(reply->outputs[1].port_address, 0x0125);
 }
 
-TEST(ArtnetCodec, TakesTheShortRepliesOfOlderNodes) {
+TEST(ArtnetCodec, AcceptsShortRepliesOfOlderNodes) {
   Bytes bytes = reply_bytes();
   bytes.resize(207);
   const auto reply = decode_poll_reply(bytes);
@@ -101,7 +101,7 @@ TEST(ArtnetCodec, SurvivesEveryTruncationAndEveryChangedByte) {
   }
 }
 
-TEST(ArtnetCodec, LetsNoControlCharacterOfANodeIntoAReport) {
+TEST(ArtnetCodec, ReplacesControlCharactersInNodeNames) {
   Bytes bytes = reply_bytes();
   bytes[27] = 0x1B;
   EXPECT_EQ(decode_poll_reply(bytes)->short_name, "N?de");
@@ -124,7 +124,7 @@ TEST(ArtnetCodec, ReadsPollsWithAndWithoutTheirRangeOfPorts) {
   EXPECT_EQ(targeted->lowest_port_address, 0x0120);
 }
 
-TEST(ArtnetCodec, WritesAPollReplyThatItReadsItself) {
+TEST(ArtnetCodec, RoundTripsAPollReply) {
   PollReply reply;
   reply.short_name = "a name that is too long";
   reply.long_name = "Luxrig test";
@@ -146,7 +146,7 @@ TEST(ArtnetCodec, WritesAPollReplyThatItReadsItself) {
   EXPECT_TRUE(back->outputs[1].merging && back->outputs[1].ltp && !back->outputs[0].merging);
 }
 
-TEST(ArtnetCodec, WritesArtAddressThatChangesNothingButWhatItCommands) {
+TEST(ArtnetCodec, WritesArtAddressThatChangesOnlyItsCommand) {
   const Bytes bytes = encode(Address{1, AddressCommand::merge_ltp, 2});
   ASSERT_EQ(bytes.size(), 107u);
   EXPECT_EQ(Bytes(bytes.begin(), bytes.begin() + 14), from_hex("4172742d4e657400 0060 000e 7f 01"));

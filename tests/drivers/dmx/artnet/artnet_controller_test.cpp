@@ -23,7 +23,7 @@ Datagram reply_from(std::uint32_t ipv4, int port_address) {
 
 // The first packet is sent twice. A change held back behind it by the rate limit once counted as sent: a blackout was
 // acknowledged while the lamps were lit.
-TEST(ArtnetController, LevelsAreSentWhenTheirPacketHasGoneOutAndNotBefore) {
+TEST(ArtnetController, LevelsCountAsSentOnlyAfterTheirPacket) {
   for (const int packets_before : {0, 1, 2, 50}) {
     Controller controller({});
     double ms = 0;
@@ -45,7 +45,7 @@ TEST(ArtnetController, LevelsAreSentWhenTheirPacketHasGoneOutAndNotBefore) {
   }
 }
 
-TEST(ArtnetController, LevelsAreSentWhenANewNodeHasThemToo) {
+TEST(ArtnetController, LevelsCountAsSentOnlyWhenNewNodesHaveThem) {
   Controller controller({});
   ASSERT_TRUE(controller.due(at_ms(0), 1, slots_at(0)));
   ASSERT_TRUE(controller.is_sent(1, slots_at(0)));

@@ -57,7 +57,7 @@ struct Bench {
 
 using Strings = std::vector<std::string>;
 
-TEST(ArtnetDriver, SendsOnlyToNodesThatPutTheUniverseOut) {
+TEST(ArtnetDriver, SendsOnlyToNodesThatOutputTheUniverse) {
   Bench bench;
   ASSERT_TRUE(bench.driver->activate(at_ms(0)));
   ASSERT_TRUE(bench.write(0, 1.0));
@@ -70,7 +70,7 @@ TEST(ArtnetDriver, SendsOnlyToNodesThatPutTheUniverseOut) {
   EXPECT_EQ(bench.health(2).device, "the-bus: Other (10.0.0.8)");
 }
 
-TEST(ArtnetDriver, ANodeThatPutsOutNothingOfOursMayGo) {
+TEST(ArtnetDriver, LosingAnUnrelatedNodeIsNoFault) {
   Bench bench;
   ASSERT_TRUE(bench.driver->activate(at_ms(0)));
   bench.hear("10.0.0.7", reply_of("Right", 1));
@@ -101,7 +101,7 @@ TEST(ArtnetDriver, SendsChangesAtOnceAndTheRestEverySecond) {
   EXPECT_EQ(bench.sent(), (Strings{"51 to 10.0.0.7:6454"}));
 }
 
-TEST(ArtnetDriver, SynchronisesNodesByBroadcastAfterEachFrameThatWasSent) {
+TEST(ArtnetDriver, SynchronisesNodesByBroadcastAfterEachSentFrame) {
   Bench bench({{"sync", true}});
   ASSERT_TRUE(bench.driver->activate(at_ms(0)));
   bench.hear("10.0.0.7", reply_of("Right", 1));
@@ -114,7 +114,7 @@ TEST(ArtnetDriver, SynchronisesNodesByBroadcastAfterEachFrameThatWasSent) {
   EXPECT_EQ(bench.sent(), Strings{});
 }
 
-TEST(ArtnetDriver, LeavesOutSequenceNumbersWhereNodesCannotCount) {
+TEST(ArtnetDriver, OmitsSequenceNumbersForNodesThatCannotCount) {
   Bench bench({{"destination", std::string("10.0.0.7")}, {"continuous", true}, {"sequence", false}});
   ASSERT_TRUE(bench.driver->activate(at_ms(0)));
   int packets = 0;
@@ -128,7 +128,7 @@ TEST(ArtnetDriver, LeavesOutSequenceNumbersWhereNodesCannotCount) {
   EXPECT_EQ(packets, 40);
 }
 
-TEST(ArtnetDriver, SaysWhenANodeMergesItsDataWithAnothers) {
+TEST(ArtnetDriver, ReportsANodeThatMergesItsDataWithAnothers) {
   Bench bench;
   ASSERT_TRUE(bench.driver->activate(at_ms(0)));
   Bytes merging = reply_of("Right", 1);
@@ -187,7 +187,7 @@ TEST(ArtnetDriver, CountsSequencesFromOneTo255WithoutZero) {
   }
 }
 
-TEST(ArtnetDriver, NamesTheNodeThatIsGoneAndGivesItTheCurrentLookWhenItIsBack) {
+TEST(ArtnetDriver, NamesALostNodeAndSendsItTheCurrentLookOnItsReturn) {
   Bench bench;
   ASSERT_TRUE(bench.driver->activate(at_ms(0)));
   bench.hear("10.0.0.7", reply_of("Stage left", 1));
@@ -213,14 +213,14 @@ TEST(ArtnetDriver, NamesTheNodeThatIsGoneAndGivesItTheCurrentLookWhenItIsBack) {
   EXPECT_EQ(bench.health(1).life, Life::active);
 }
 
-TEST(ArtnetDriver, SaysWhichUniverseNoNodePutsOut) {
+TEST(ArtnetDriver, NamesAUniverseThatNoNodeOutputs) {
   Bench bench;
   ASSERT_TRUE(bench.driver->activate(at_ms(0)));
   for (double ms = 0; ms < 9000; ms += 23) (void)bench.write(ms, 0.2);
   EXPECT_EQ(bench.health().detail, "timeout: no node puts out universe 1 (0:0:1)");
 }
 
-TEST(ArtnetDriver, TakesSilenceForNoFaultWhereNoReplyIsExpected) {
+TEST(ArtnetDriver, IgnoresSilenceWhereNoReplyIsExpected) {
   Bench bench({{"destination", std::string("10.0.0.7")}, {"expect_reply", false}});
   EXPECT_FALSE(bench.driver->bounds().notices_loss);
   ASSERT_TRUE(bench.driver->activate(at_ms(0)));
@@ -239,7 +239,7 @@ TEST(ArtnetDriver, IsFaultedAtOnceWhenThePortIsClosed) {
   EXPECT_TRUE(bench.write(1300, 0.2));
 }
 
-TEST(ArtnetDriver, SendsNothingForASetpointThatCannotBeSentAndNothingWhileInactive) {
+TEST(ArtnetDriver, SendsNothingForAnInvalidSetpointOrWhileInactive) {
   Bench bench({{"destination", std::string("10.0.0.7")}});
   EXPECT_EQ(bench.write(0, 0.5).error().cause, Cause::inactive);
   ASSERT_TRUE(bench.driver->activate(at_ms(0)));
@@ -249,7 +249,7 @@ TEST(ArtnetDriver, SendsNothingForASetpointThatCannotBeSentAndNothingWhileInacti
   EXPECT_EQ(bench.sent(), Strings{});
 }
 
-TEST(ArtnetDriver, RefusesOptionsThatCannotWork) {
+TEST(ArtnetDriver, RefusesInvalidOptions) {
   const auto count = [](const char* key, OptionValue value) {
     return check_artnet(rig_with(bus_of("artnet", {{key, std::move(value)}})), 0).size();
   };

@@ -20,7 +20,7 @@ Bytes tod_of(int total, int block, std::vector<rdm::Uid> uids, int port_address 
   return encode(TodData{port_address, 1, 1, true, total, block, std::move(uids)});
 }
 
-TEST(ArtnetRdmCodec, WritesTheFieldsWhereTheSpecificationHasThem) {
+TEST(ArtnetRdmCodec, FollowsTheSpecifiedFieldLayout) {
   const int ports[] = {0x0123, 0x0124};
   Bytes request = from_hex("4172742d4e657400 0080 000e 0000 00000000000000 01 00 02 2324");
   request.resize(56, 0);
@@ -42,7 +42,7 @@ TEST(ArtnetRdmCodec, WritesTheFieldsWhereTheSpecificationHasThem) {
   EXPECT_EQ(back->rdm, rdm);
 }
 
-TEST(ArtnetRdmCodec, RefusesTruncationsAndCountsThatAreNotThere) {
+TEST(ArtnetRdmCodec, RefusesTruncationsAndWrongCounts) {
   const int ports[] = {0x0123};
   const Bytes request = encode_tod_request(ports);
   const Bytes data = tod_of(2, 0, {{0x7a70, 1}, {0x7a70, 2}});
@@ -93,7 +93,7 @@ TEST_F(LinkTest, CollectsTheBlocksOfATable) {
   EXPECT_EQ(link.table().uids, (std::set<rdm::Uid>{{0x7a70, 9}}));
 }
 
-TEST_F(LinkTest, ListensToItsNodeAndItsPortOnly) {
+TEST_F(LinkTest, ListensOnlyToItsNodeAndPort) {
   arrive(tod_of(1, 0, {{0x7a70, 1}}), {0x0A000008, kPort});
   arrive(tod_of(1, 0, {{0x7a70, 1}}, 0x0124));
   arrive(encode_poll());
@@ -132,7 +132,7 @@ TEST_F(LinkTest, CarriesAClientsQuestionsAndAnswers) {
   EXPECT_TRUE(client.idle());
 }
 
-TEST_F(LinkTest, TellsWhatTheNetworkSaidWhenItCannotSend) {
+TEST_F(LinkTest, ReportsTheNetworkErrorWhenItCannotSend) {
   script->send_fails = Fault{Cause::network, "", "no route", {}};
   rdm::Client client(link, {0x7ff0, 1});
   client.begin({{0x7a70, 1}});

@@ -39,14 +39,14 @@ TEST(ArtnetInput, FollowsADeskAtOnceAndLosesItAfterTenSeconds) {
   EXPECT_EQ(level(receiver, 10101), 42);
 }
 
-TEST(ArtnetInput, CannotSayThatThereIsNobodyBeforeTheSlowestRefresh) {
+TEST(ArtnetInput, ReportsNoDeskOnlyAfterTheSlowestRefresh) {
   Receiver receiver(node_of());
   EXPECT_EQ(presence(receiver, 0), DeskPresence::unknown);
   EXPECT_EQ(presence(receiver, 3999), DeskPresence::unknown);
   EXPECT_EQ(presence(receiver, 4000), DeskPresence::absent);
 }
 
-TEST(ArtnetInput, KeepsToTheSequenceRuleUnlessItIsZero) {
+TEST(ArtnetInput, FollowsTheSequenceRuleUnlessTheNumberIsZero) {
   Receiver receiver(node_of());
   EXPECT_EQ(send(receiver, 0, kOne, 1, 100), Verdict::taken);
   EXPECT_EQ(send(receiver, 1, kOne, 2, 100), Verdict::out_of_order);
@@ -72,7 +72,7 @@ TEST(ArtnetInput, MergesTwoSendersIgnoresAThirdAndForgetsASilentOne) {
   EXPECT_EQ(send(receiver, 10002, kThree, 255), Verdict::taken);
 }
 
-TEST(ArtnetInput, ObeysArtAddressAboutMerging) {
+TEST(ArtnetInput, FollowsArtAddressMergeCommands) {
   Receiver receiver(node_of());
   send(receiver, 0, kOne, 200);
   send(receiver, 10, kTwo, 90);
@@ -92,7 +92,7 @@ TEST(ArtnetInput, ObeysArtAddressAboutMerging) {
   EXPECT_EQ(level(receiver, 91), 93);
 }
 
-TEST(ArtnetInput, HoldsForArtSyncOfItsSenderAndFallsBackAfterFourSeconds) {
+TEST(ArtnetInput, WaitsForItsSendersArtSyncAndFallsBackAfterFourSeconds) {
   Receiver receiver(node_of());
   send(receiver, 0, kOne, 10);
   receiver.receive(at_ms(10), kTwo, encode_sync());  // not the source of the data it shows
@@ -121,7 +121,7 @@ TEST(ArtnetInput, DoesNotSynchroniseWhileItMerges) {
   EXPECT_EQ(level(receiver, 21), 30);
 }
 
-TEST(ArtnetInput, AnswersPollsOfItsPortsAPageForFourAndAfterItsDelay) {
+TEST(ArtnetInput, AnswersPollsAfterItsDelayWithFourPortsAPage) {
   ReceiverSettings settings = node_of({0x10, 0x11, 0x12, 0x13, 0x14, 0x20});
   settings.reply_delay = std::chrono::milliseconds(300);
   Receiver receiver(settings);
@@ -142,7 +142,7 @@ TEST(ArtnetInput, AnswersPollsOfItsPortsAPageForFourAndAfterItsDelay) {
   EXPECT_EQ(heard->mac, settings.mac);
 }
 
-TEST(ArtnetInput, TellsControllersThatItMerges) {
+TEST(ArtnetInput, ReportsMergingToControllers) {
   Receiver receiver(node_of());
   send(receiver, 0, kOne, 200);
   send(receiver, 10, kTwo, 90);
@@ -153,7 +153,7 @@ TEST(ArtnetInput, TellsControllersThatItMerges) {
   EXPECT_FALSE(answers[0].reply.outputs.at(0).ltp);
 }
 
-TEST(ArtnetInput, TakesNothingForOtherUniverses) {
+TEST(ArtnetInput, IgnoresOtherUniverses) {
   Receiver receiver(node_of());
   EXPECT_EQ(presence(receiver, 0), DeskPresence::unknown);
   EXPECT_EQ(send(receiver, 0, kOne, 1, 0, 2), Verdict::not_for_us);

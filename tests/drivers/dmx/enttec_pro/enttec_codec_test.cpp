@@ -28,7 +28,7 @@ TEST(EnttecCodec, AFullUniverseHas518BytesAndStartsAsPublished) {
   EXPECT_EQ(bytes[517], 0xe7);
 }
 
-TEST(EnttecCodec, AsksAndSetsAsPublished) {
+TEST(EnttecCodec, WritesRequestsAsPublished) {
   const std::uint8_t none[] = {0, 0};
   EXPECT_EQ(encode(Label::get_parameters, none), from_hex("7e 03 02 00 00 00 e7"));
   EXPECT_EQ(encode(Label::serial_number, {}), from_hex("7e 0a 00 00 e7"));
@@ -43,7 +43,7 @@ TEST(EnttecCodec, UnitsAre10Point67Microseconds) {
   EXPECT_EQ(units_of_us(176), 17);  // 181 µs: nearer than 171
 }
 
-TEST(EnttecCodec, ReadsAnswersThatOlaUnderstands) {
+TEST(EnttecCodec, ReadsTheAnswersThatOlaReads) {
   StreamDecoder decoder;
   const auto messages = all(decoder, from_hex("7e 0a 04 00 12 34 56 02 e7  7e 03 05 00 44 01 09 01 28 e7"
                                               "7e 4e 05 00 01 00 50 72 6f e7"));
@@ -69,7 +69,7 @@ TEST(EnttecCodec, RefusesAnswersCutShortOrOutOfRange) {
   EXPECT_EQ(decode_name(from_hex("01 00 41 07 42 00 43")), "A?B");
 }
 
-TEST(EnttecCodec, TakesMessagesByteByByteWithDelimitersInTheData) {
+TEST(EnttecCodec, AcceptsByteWiseMessagesWithDelimitersInTheData) {
   StreamDecoder decoder;
   const auto stream = from_hex("7e 05 04 00 7e e7 7e e7 e7");
   std::vector<Message> messages;
@@ -81,7 +81,7 @@ TEST(EnttecCodec, TakesMessagesByteByByteWithDelimitersInTheData) {
   EXPECT_EQ(messages[0], (Message{5, from_hex("7e e7 7e e7")}));
 }
 
-TEST(EnttecCodec, FindsTheNextMessageBehindNoiseAWrongEndAndAWrongLength) {
+TEST(EnttecCodec, FindsTheNextMessageAfterNoiseWrongEndOrWrongLength) {
   const auto good = from_hex("7e 0a 04 00 01 02 03 04 e7");
   for (const char* before : {"00 ff e7", "7e 03 05 00 44 01 09 01 28 e6", "7e 03 ff ff", "7e 7e", "7e 7e 03 59 02"}) {
     StreamDecoder decoder;
@@ -94,7 +94,7 @@ TEST(EnttecCodec, FindsTheNextMessageBehindNoiseAWrongEndAndAWrongLength) {
   }
 }
 
-TEST(EnttecCodec, AGarbledLengthHoldsBackUntilItIsGivenUp) {
+TEST(EnttecCodec, AGarbledLengthBlocksUntilItIsGivenUp) {
   StreamDecoder decoder;
   const auto stream = from_hex("7e 03 05 02 44 01 09 01 28 e7  7e 0a 04 00 01 02 03 04 e7");  // states 517 bytes
   EXPECT_TRUE(all(decoder, stream).empty());

@@ -29,7 +29,7 @@ struct Conversation {
   DmxSlots slots{};
 };
 
-TEST(WidgetSession, AsksWhoIsThereBeforeItIsLiveAndNeverAgain) {
+TEST(WidgetSession, IdentifiesTheWidgetOnceBeforeItIsLive) {
   Conversation c;
   EXPECT_EQ(c.due(0), (std::vector<int>{3, 10, 77, 78}));
   EXPECT_FALSE(c.session.is_live());
@@ -49,7 +49,7 @@ TEST(WidgetSession, AsksWhoIsThereBeforeItIsLiveAndNeverAgain) {
   EXPECT_EQ(later, (std::set<int>{3, 6}));
 }
 
-TEST(WidgetSession, AnOriginalWidgetThatHasNoNameIsLiveAfter200Ms) {
+TEST(WidgetSession, AnOriginalWidgetWithoutANameIsLiveAfter200Ms) {
   Conversation c;
   (void)c.due(0);
   c.session.receive(at_ms(5), kParameters);
@@ -92,7 +92,7 @@ TEST(WidgetSession, SetsParametersOnlyWhereTheyDiffer) {
   EXPECT_EQ(differs.due(2), (std::vector<int>{4, 6}));
 }
 
-TEST(WidgetSession, AnAnswerIsOverdueAfter500MsAndMendsItself) {
+TEST(WidgetSession, AnAnswerIsOverdueAfter500MsUntilItArrives) {
   Conversation c;
   (void)c.due(0);
   EXPECT_FALSE(c.session.is_overdue(at_ms(500)));
@@ -102,7 +102,7 @@ TEST(WidgetSession, AnAnswerIsOverdueAfter500MsAndMendsItself) {
   EXPECT_TRUE(c.session.has_answered());
 }
 
-TEST(WidgetSession, ALengthThatWasGarbledCostsOneAnswer) {
+TEST(WidgetSession, AGarbledLengthCostsOneAnswer) {
   Conversation c;
   (void)c.due(0);
   c.session.receive(at_ms(1), from_hex("7e 03 05 02 44 01 11 02 28 e7"));
@@ -111,7 +111,7 @@ TEST(WidgetSession, ALengthThatWasGarbledCostsOneAnswer) {
   EXPECT_TRUE(c.session.has_answered());
 }
 
-TEST(WidgetSession, BeforeLeavingOnlyWhatHasNotBeenSent) {
+TEST(WidgetSession, SendsOnlyUnsentLevelsBeforeLeaving) {
   Conversation c;
   EXPECT_TRUE(c.session.unsent(c.slots).empty());  // not live: no levels have been set
   (void)c.due(0);

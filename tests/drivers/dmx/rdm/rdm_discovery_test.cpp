@@ -102,7 +102,7 @@ std::vector<Uid> with(const std::vector<Device>& devices, std::initializer_list<
   return uids;
 }
 
-TEST(RdmDiscovery, OfAnEmptyLineAsksSevenTimes) {
+TEST(RdmDiscovery, TakesFiveRequestsOnAnEmptyLine) {
   Line line({}, Clash::bits_add_up, 0, 1);
   const auto result = discover(line);
   ASSERT_TRUE(result);
@@ -110,7 +110,7 @@ TEST(RdmDiscovery, OfAnEmptyLineAsksSevenTimes) {
   EXPECT_EQ(result->requests, 3 + 2);
 }
 
-TEST(RdmDiscovery, FindsAllOfUpTo200WhateverCollisionsSoundLike) {
+TEST(RdmDiscovery, FindsUpTo200DevicesUnderAnyCollisions) {
   for (unsigned seed = 1; seed <= 60; ++seed) {
     Random random(seed);
     const std::size_t count = seed == 1 ? 200 : 1 + random.below(200);
@@ -127,7 +127,7 @@ TEST(RdmDiscovery, FindsAllOfUpTo200WhateverCollisionsSoundLike) {
   }
 }
 
-TEST(RdmDiscovery, FindsTheWellBehavedAmongOthers) {
+TEST(RdmDiscovery, FindsWellBehavedDevicesAmongFaultyOnes) {
   int max_requests = 0;
   for (unsigned seed = 1; seed <= 90; ++seed) {
     Random random(seed);
@@ -160,7 +160,7 @@ bool drowned_by(const Uid& who, const Uid& by) {
   return true;
 }
 
-TEST(RdmDiscovery, IsNotKeptFromEndingByWhoAnswersForRangesThatAreNotItsOwn) {
+TEST(RdmDiscovery, EndsDespiteDevicesThatAnswerForForeignRanges) {
   std::size_t drowned = 0;
   for (unsigned seed = 1; seed <= 30; ++seed) {
     Random random(seed);
@@ -186,7 +186,7 @@ TEST(RdmDiscovery, IsNotKeptFromEndingByWhoAnswersForRangesThatAreNotItsOwn) {
   EXPECT_LE(drowned, 2u);  // of about six hundred
 }
 
-TEST(RdmDiscovery, FindsAllThoughATenthOfThePacketsIsLost) {
+TEST(RdmDiscovery, FindsDevicesWithATenthOfPacketsLost) {
   std::size_t missed = 0, all = 0;
   for (unsigned seed = 1; seed <= 40; ++seed) {
     Random random(seed);
@@ -202,7 +202,7 @@ TEST(RdmDiscovery, FindsAllThoughATenthOfThePacketsIsLost) {
   EXPECT_LE(missed * 200, all);  // one in two hundred
 }
 
-TEST(RdmDiscovery, EndsOnALineOfNothingButNoise) {
+TEST(RdmDiscovery, EndsOnALineOfPureNoise) {
   class Noise final : public DiscoveryLine {
    public:
     Result<void> un_mute_everybody() override { return {}; }

@@ -27,7 +27,7 @@ Packet set_address_42() {
   return packet;
 }
 
-TEST(RdmPacket, OfAStartAddressIsAsOlaSendsIt) {
+TEST(RdmPacket, OfAStartAddressMatchesOla) {
   const Bytes bytes = from_hex("cc011a7a70ffffff027a700000000105010000003000f002002a 070d");
   EXPECT_EQ(encode(set_address_42()), bytes);
   const auto packet = decode(bytes);
@@ -41,13 +41,13 @@ TEST(RdmPacket, OfAStartAddressIsAsOlaSendsIt) {
   EXPECT_EQ(decode_start_address(packet->data), std::optional<int>(42));
 }
 
-TEST(RdmPacket, OfDiscoveryIsAsPublished) {
+TEST(RdmPacket, OfDiscoveryMatchesThePublishedBytes) {
   EXPECT_EQ(encode(un_mute_request(kController, 0)), from_hex("cc0118ffffffffffff7a7000000001000100000010000300 07de"));
   EXPECT_EQ(encode(unique_branch_request(kController, 0, uid_of(0), uid_of(0xFFFFFFFFFFFE))),
             from_hex("cc0124ffffffffffff7a700000000100010000001000010c000000000000fffffffffffe 0ded"));
 }
 
-TEST(RdmPacket, OfAMovingYokeTellsItsFields) {
+TEST(RdmPacket, OfAMovingYokeGivesItsFields) {
   Packet ask;
   ask.to = {0x7a70, 2};
   ask.from = kController;
@@ -70,7 +70,7 @@ TEST(RdmPacket, OfAMovingYokeTellsItsFields) {
   EXPECT_EQ(info->sensors, 0);
 }
 
-TEST(RdmPacket, IsRefusedWithEveryOtherByteAndEveryTruncation) {
+TEST(RdmPacket, IsRefusedWithAnyChangedByteOrTruncation) {
   const Bytes good = encode(set_address_42());
   for (std::size_t at = 0; at < good.size(); ++at) {
     for (int change = 1; change < 256; ++change) {
@@ -85,7 +85,7 @@ TEST(RdmPacket, IsRefusedWithEveryOtherByteAndEveryTruncation) {
   EXPECT_TRUE(decode(longer));
 }
 
-TEST(RdmBranchAnswer, IsAsPublishedAndSurvivesAShorterPreamble) {
+TEST(RdmBranchAnswer, MatchesThePublishedBytesAndToleratesAShorterPreamble) {
   const Uid uid{0x7a70, 1};
   const Bytes bytes = from_hex("fefefefefefefeaafa7ffa75aa55aa55aa55ab55ae57eff5");
   EXPECT_EQ(encode_branch_answer(uid), bytes);
@@ -101,7 +101,7 @@ TEST(RdmBranchAnswer, IsAsPublishedAndSurvivesAShorterPreamble) {
   }
 }
 
-TEST(RdmNames, AreReadAsTheyAreWritten) {
+TEST(RdmNames, RoundTrip) {
   EXPECT_EQ(parse_uid("7a70:ffffff02"), (Uid{0x7a70, 0xffffff02}));
   EXPECT_EQ(parse_uid("7A70FFFFFF02"), (Uid{0x7a70, 0xffffff02}));
   for (const char* bad : {"", "7a70", "7a70:ffffff0", "7a70-ffffff02", "7a70:ffffff02x", "g000:00000000"}) {
@@ -143,7 +143,7 @@ TEST(RdmValues, OfASensorHaveItsUnitAndPrefix) {
   EXPECT_EQ(value->highest, 650);
 }
 
-TEST(RdmValues, OfOtherFormsAreRefused) {
+TEST(RdmValues, OfInvalidFormAreRefused) {
   const Bytes info = from_hex("0100 0005 0102 00000002 0011 01 04 0001 0000 00");
   for (std::size_t size = 0; size < info.size(); ++size) EXPECT_FALSE(decode_device_info(std::span(info).first(size)));
   Bytes none = info;

@@ -48,7 +48,7 @@ struct Talk {
   Packet last;
 };
 
-TEST(RdmTransaction, IsOverWithItsAnswer) {
+TEST(RdmTransaction, EndsWithItsAnswer) {
   Talk talk(Pid::device_hours);
   const auto sent = talk.due(0);
   ASSERT_TRUE(sent);
@@ -61,7 +61,7 @@ TEST(RdmTransaction, IsOverWithItsAnswer) {
   EXPECT_FALSE(talk.due(1000));
 }
 
-TEST(RdmTransaction, AsksThreeTimesThenGivesUp) {
+TEST(RdmTransaction, GivesUpAfterThreeRequests) {
   Talk talk(Pid::device_hours);
   ASSERT_TRUE(talk.due(0));
   EXPECT_FALSE(talk.due(299));
@@ -75,7 +75,7 @@ TEST(RdmTransaction, AsksThreeTimesThenGivesUp) {
   EXPECT_EQ(talk.fault().device, "7a70:00000001");
 }
 
-TEST(RdmTransaction, TakesTheAnswerToItsSecondQuestion) {
+TEST(RdmTransaction, AcceptsTheAnswerToItsSecondRequest) {
   Talk talk(Pid::device_hours);
   ASSERT_TRUE(talk.due(0));
   ASSERT_TRUE(talk.due(300));
@@ -83,7 +83,7 @@ TEST(RdmTransaction, TakesTheAnswerToItsSecondQuestion) {
   EXPECT_TRUE(talk.answered({1, 2, 3, 4}));
 }
 
-TEST(RdmTransaction, IgnoresWhatIsNoAnswerToIt) {
+TEST(RdmTransaction, IgnoresForeignAnswers) {
   Talk talk(Pid::device_hours);
   ASSERT_TRUE(talk.due(0));
   const Packet good = talk.answer(ResponseType::ack, {0, 0, 0, 7});
@@ -103,7 +103,7 @@ TEST(RdmTransaction, IgnoresWhatIsNoAnswerToIt) {
   EXPECT_FALSE(ignored([](Packet&) {}));
 }
 
-TEST(RdmTransaction, NamesTheReasonOfANack) {
+TEST(RdmTransaction, ReportsTheReasonOfANack) {
   Talk talk(Pid::dmx_start_address, CommandClass::set, kDevice, {0, 1});
   ASSERT_TRUE(talk.due(0));
   talk.hear(1, ResponseType::nack, {0, 4});
@@ -111,7 +111,7 @@ TEST(RdmTransaction, NamesTheReasonOfANack) {
   EXPECT_EQ(talk.fault().detail, "dmx_start_address: " + text_of_nack(4));
 }
 
-TEST(RdmTransaction, WaitsAsLongAsItIsToldThenAsksTheQueue) {
+TEST(RdmTransaction, WaitsForTheAckTimerAndThenPollsTheQueue) {
   Talk talk(Pid::lamp_hours);
   ASSERT_TRUE(talk.due(0));
   talk.hear(1, ResponseType::ack_timer, {0, 5});
@@ -128,7 +128,7 @@ TEST(RdmTransaction, WaitsAsLongAsItIsToldThenAsksTheQueue) {
   EXPECT_TRUE(talk.answered({0, 0, 1, 0}));
 }
 
-TEST(RdmTransaction, AsksForTheLastMessageWhenAQueuedAnswerWasLost) {
+TEST(RdmTransaction, RequestsTheLastMessageWhenAQueuedAnswerWasLost) {
   Talk talk(Pid::lamp_hours);
   ASSERT_TRUE(talk.due(0));
   talk.hear(1, ResponseType::ack_timer, {0, 1});
@@ -139,7 +139,7 @@ TEST(RdmTransaction, AsksForTheLastMessageWhenAQueuedAnswerWasLost) {
   EXPECT_TRUE(talk.answered({0, 0, 1, 0}));
 }
 
-TEST(RdmTransaction, AsksAgainWhenThereIsNoQueueOrItIsEmpty) {
+TEST(RdmTransaction, RepeatsTheRequestWithoutAQueueOrWithAnEmptyOne) {
   Talk none(Pid::lamp_hours);
   ASSERT_TRUE(none.due(0));
   none.hear(1, ResponseType::ack_timer, {0, 1});
@@ -162,7 +162,7 @@ TEST(RdmTransaction, AsksAgainWhenThereIsNoQueueOrItIsEmpty) {
   EXPECT_TRUE(empty.answered({0, 0, 0, 1}));
 }
 
-TEST(RdmTransaction, DoesNotWaitForTimersWithoutEnd) {
+TEST(RdmTransaction, DoesNotWaitForEndlessTimers) {
   Talk longer(Pid::lamp_hours);
   ASSERT_TRUE(longer.due(0));
   longer.hear(1, ResponseType::ack_timer, {0xff, 0xff});
@@ -179,7 +179,7 @@ TEST(RdmTransaction, DoesNotWaitForTimersWithoutEnd) {
   EXPECT_LE(sent, 10002);  // one in each step of 1 ms, the caller's pace, for 10 s
 }
 
-TEST(RdmTransaction, CollectsPartsAndStartsAnewWhenOneIsLost) {
+TEST(RdmTransaction, CollectsPartsAndRestartsWhenOneIsLost) {
   Talk talk(Pid::slot_info);
   ASSERT_TRUE(talk.due(0));
   talk.hear(1, ResponseType::ack_overflow, {1, 2});
@@ -198,7 +198,7 @@ TEST(RdmTransaction, CollectsPartsAndStartsAnewWhenOneIsLost) {
   EXPECT_TRUE(talk.answered({1, 2, 3, 4}));
 }
 
-TEST(RdmTransaction, EndsAnAnswerWithoutEnd) {
+TEST(RdmTransaction, EndsAnEndlessAnswer) {
   Talk talk(Pid::slot_info);
   for (int i = 0; i < 1000 && !talk.transaction.result(); ++i) {
     ASSERT_TRUE(talk.due(i));
@@ -207,7 +207,7 @@ TEST(RdmTransaction, EndsAnAnswerWithoutEnd) {
   EXPECT_EQ(talk.fault().cause, Cause::protocol);
 }
 
-TEST(RdmTransaction, CallsAnswersThatNoStandardHasAFault) {
+TEST(RdmTransaction, TreatsUndefinedAnswerTypesAsAFault) {
   for (const int type : {1, 2, 4, 255}) {
     Talk talk(Pid::device_hours);
     ASSERT_TRUE(talk.due(0));
@@ -216,7 +216,7 @@ TEST(RdmTransaction, CallsAnswersThatNoStandardHasAFault) {
   }
 }
 
-TEST(RdmTransaction, ToEverybodyIsOverOnceItIsSent) {
+TEST(RdmTransaction, EndsABroadcastOnceItIsSent) {
   Talk talk(Pid::identify_device, CommandClass::set, kEverybody, {0});
   ASSERT_TRUE(talk.due(0));
   EXPECT_TRUE(talk.answered({}));

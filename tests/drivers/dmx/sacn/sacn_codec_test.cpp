@@ -46,7 +46,7 @@ TEST(SacnCodec, WritesAShortPacketWithItsOwnLengths) {
   EXPECT_EQ(part(bytes, 108, 129), from_hex("64 0000 07 00 0003 700e 02 a1 0000 0001 0004 00 010203"));
 }
 
-TEST(SacnCodec, PutsEachOptionIntoItsBit) {
+TEST(SacnCodec, EncodesEachOptionInItsBit) {
   DataPacket packet = full_packet();
   packet.preview = true;
   EXPECT_EQ(encode(packet)[112], 0x80);
@@ -67,7 +67,7 @@ TEST(SacnCodec, CutsALongNameAtACharacterAndEndsItWithNul) {
   EXPECT_EQ(bytes[44 + 63], 0);
 }
 
-TEST(SacnCodec, HearsASourceThatFillsTheWholeNameField) {
+TEST(SacnCodec, AcceptsASourceNameThatFillsItsField) {
   Bytes bytes = encode(full_packet());
   std::fill_n(bytes.begin() + 44, 64, 'x');
   const auto packet = decode(bytes);
@@ -75,7 +75,7 @@ TEST(SacnCodec, HearsASourceThatFillsTheWholeNameField) {
   EXPECT_EQ(packet->source_name, std::string(64, 'x'));
 }
 
-TEST(SacnCodec, ReadsBackWhatItWrites) {
+TEST(SacnCodec, RoundTrips) {
   DataPacket packet = full_packet();
   packet.universe = 63999;
   packet.priority = 200;
@@ -124,7 +124,7 @@ TEST(SacnCodec, RefusesUniverseZeroAndPriority201) {
   EXPECT_FALSE(decode(bytes));
 }
 
-TEST(SacnCodec, KnowsTheGroupOfAUniverse) {
+TEST(SacnCodec, GivesTheMulticastGroupOfAUniverse) {
   EXPECT_EQ(multicast_group(1), 0xEFFF0001u);      // 239.255.0.1
   EXPECT_EQ(multicast_group(63999), 0xEFFFF9FFu);  // 239.255.249.255
 }

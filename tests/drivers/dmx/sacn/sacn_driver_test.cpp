@@ -51,7 +51,7 @@ TEST(SacnDriver, SendsEachUniverseToItsGroup) {
   EXPECT_FALSE(bench.driver->bounds().notices_loss);
 }
 
-TEST(SacnDriver, TakesItsOptions) {
+TEST(SacnDriver, AppliesItsOptions) {
   SacnBench bench({{"destination", std::string("10.1.2.3")},
                    {"port", std::int64_t{7777}},
                    {"priority", std::int64_t{150}},
@@ -66,7 +66,7 @@ TEST(SacnDriver, TakesItsOptions) {
   EXPECT_TRUE(bench.driver->bounds().notices_loss);
 }
 
-TEST(SacnDriver, SendsToEachReceiverOfAListAndToTheSynchronisationUniverse) {
+TEST(SacnDriver, SendsDataAndSynchronisationToEachListedReceiver) {
   SacnBench bench({{"destination", std::string("10.0.0.1, 10.0.0.2")}, {"sync_universe", std::int64_t{50}}});
   ASSERT_TRUE(bench.driver->activate(at_ms(0)));
   ASSERT_TRUE(bench.write(0, 0.5));
@@ -81,7 +81,7 @@ TEST(SacnDriver, SendsToEachReceiverOfAListAndToTheSynchronisationUniverse) {
   EXPECT_EQ(text_of(multicast.net->sent.at(2).to), "239.255.0.50:5568");
 }
 
-TEST(SacnDriver, MarksPreviewDataAndSaysPrioritiesOfTheSlotsItsFixturesUse) {
+TEST(SacnDriver, MarksPreviewDataAndSendsPrioritiesOfUsedSlots) {
   SacnBench bench({{"preview", true}, {"slot_priority", true}, {"priority", std::int64_t{0}}});
   ASSERT_TRUE(bench.driver->activate(at_ms(0)));
   ASSERT_TRUE(bench.write(0, 0.5));
@@ -94,7 +94,7 @@ TEST(SacnDriver, MarksPreviewDataAndSaysPrioritiesOfTheSlotsItsFixturesUse) {
   EXPECT_EQ(bench.packet(2).start_code, sacn::kLevels);
 }
 
-TEST(SacnDriver, SendsTheSamePacketsByEveryInterface) {
+TEST(SacnDriver, SendsTheSamePacketsOverEveryInterface) {
   Rig rig = rig_with(bus_of("sacn"));
   add_dmx(rig, "spot", 1, 5);
   const auto left = std::make_shared<DatagramScript>(), right = std::make_shared<DatagramScript>();
@@ -113,7 +113,7 @@ TEST(SacnDriver, SendsTheSamePacketsByEveryInterface) {
   EXPECT_EQ(left->sent[0].bytes, right->sent[0].bytes);
 }
 
-TEST(SacnDriver, SendsEverythingToTheStandInWhenRedirected) {
+TEST(SacnDriver, SendsEverythingToTheRedirectedAddress) {
   SacnBench bench({{"interface", std::string("no-such-0")}}, Redirect{"127.0.0.1", 4444});
   ASSERT_TRUE(bench.driver->activate(at_ms(0)));
   ASSERT_TRUE(bench.write(0, 0.5));
@@ -121,7 +121,7 @@ TEST(SacnDriver, SendsEverythingToTheStandInWhenRedirected) {
   EXPECT_EQ(text_of(bench.net->sent.at(1).to), "127.0.0.1:4444");
 }
 
-TEST(SacnDriver, SaysGoodbyeThreeTimesPerUniverseAndOnlyOnce) {
+TEST(SacnDriver, SendsThreeGoodbyesPerUniverseOnlyOnce) {
   SacnBench bench;
   ASSERT_TRUE(bench.driver->activate(at_ms(0)));
   ASSERT_TRUE(bench.write(0, 1.0));
@@ -138,7 +138,7 @@ TEST(SacnDriver, SaysGoodbyeThreeTimesPerUniverseAndOnlyOnce) {
   EXPECT_EQ(bench.net->sent.size(), 6u);
 }
 
-TEST(SacnDriver, SaysGoodbyeWhenDestroyedWhileActive) {
+TEST(SacnDriver, SendsGoodbyesWhenDestroyedWhileActive) {
   SacnBench bench;
   ASSERT_TRUE(bench.driver->activate(at_ms(0)));
   ASSERT_TRUE(bench.write(0, 1.0));
@@ -147,7 +147,7 @@ TEST(SacnDriver, SaysGoodbyeWhenDestroyedWhileActive) {
   EXPECT_FALSE(bench.net->open);
 }
 
-TEST(SacnDriver, WritesNothingBeforeItIsActiveOrAfter) {
+TEST(SacnDriver, WritesNothingWhileInactive) {
   SacnBench bench;
   EXPECT_EQ(bench.write(0, 1.0).error().cause, Cause::inactive);
   ASSERT_TRUE(bench.driver->activate(at_ms(0)));
@@ -156,7 +156,7 @@ TEST(SacnDriver, WritesNothingBeforeItIsActiveOrAfter) {
   EXPECT_TRUE(bench.net->sent.empty());
 }
 
-TEST(SacnDriver, SendsNothingForASetpointThatCannotBeSent) {
+TEST(SacnDriver, SendsNothingForAnInvalidSetpoint) {
   SacnBench bench;
   ASSERT_TRUE(bench.driver->activate(at_ms(0)));
   EXPECT_EQ(bench.write(0, std::numeric_limits<double>::quiet_NaN()).error().cause, Cause::invalid);
@@ -181,7 +181,7 @@ TEST(SacnDriver, IsFaultedWhileTheReceiversPortIsClosedAndKeepsSending) {
   EXPECT_EQ(bench.net->sent.size(), 4u);
 }
 
-TEST(SacnDriver, IsActiveAgainOnceTheNetworkHasBeenQuietAndSendsTheCurrentSetpoint) {
+TEST(SacnDriver, RecoversAfterAQuietPeriodWithTheCurrentSetpoint) {
   SacnBench bench({{"destination", std::string("127.0.0.1")}});
   ASSERT_TRUE(bench.driver->activate(at_ms(0)));
   ASSERT_TRUE(bench.write(0, 0.1));
@@ -207,7 +207,7 @@ TEST(SacnDriver, ReportsAnUnreachableNetworkAndRecovers) {
   EXPECT_EQ(bench.health(1300).last_ok, at_ms(1300));
 }
 
-TEST(SacnDriver, StartsFaultedWithoutItsInterfaceAndTriesAgainEverySecond) {
+TEST(SacnDriver, StartsFaultedWithoutItsInterfaceAndRetriesEverySecond) {
   SacnBench bench;
   bench.net->open_fails = Fault{Cause::network, {}, "looking up the interface \"eth9\": No such device", {}};
   ASSERT_TRUE(bench.driver->activate(at_ms(0)));
@@ -221,7 +221,7 @@ TEST(SacnDriver, StartsFaultedWithoutItsInterfaceAndTriesAgainEverySecond) {
   EXPECT_TRUE(bench.write(2300, 1.0));
 }
 
-TEST(SacnDriver, RefusesOptionsThatCannotWork) {
+TEST(SacnDriver, RefusesInvalidOptions) {
   const auto problem = [](const char* key, OptionValue value) {
     Rig rig = rig_with(bus_of("sacn", {{key, std::move(value)}}));
     const auto problems = check_sacn(rig, 0);

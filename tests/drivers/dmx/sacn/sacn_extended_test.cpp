@@ -37,7 +37,7 @@ TEST(SacnExtendedCodec, WritesUniverseDiscoveryAsTheStandardPrintsIt) {
   EXPECT_EQ(Bytes(bytes.begin() + 108, bytes.end()), from_hex("00000000 700e 00000001 00 01 0001 012c f9ff"));
 }
 
-TEST(SacnExtendedCodec, ReadsBackWhatItWritesAndNoTruncationOrChangeOfAFixedField) {
+TEST(SacnExtendedCodec, RoundTripsAndRefusesTruncationsAndChangedFixedFields) {
   const Bytes sync = encode(SyncPacket{kSomebody, 255, 63999});
   const auto back = decode_sync(sync);
   ASSERT_TRUE(back);
@@ -93,7 +93,7 @@ TEST(SacnExtendedSource, SynchronisesOncePerFrameAfterAllUniverses) {
   }
 }
 
-TEST(SacnExtendedSource, DoesNotSynchroniseAFrameInWhichNothingWasSent) {
+TEST(SacnExtendedSource, DoesNotSynchroniseAFrameWithoutData) {
   SourceSettings settings = settings_of(9);
   settings.continuous = false;
   Source source(settings);
@@ -107,7 +107,7 @@ TEST(SacnExtendedSource, DoesNotSynchroniseAFrameInWhichNothingWasSent) {
   EXPECT_LT(syncs, 12);
 }
 
-TEST(SacnExtendedSource, ListsWhatItSendsEveryTenSecondsInPagesOf512) {
+TEST(SacnExtendedSource, ListsItsUniversesEveryTenSecondsInPagesOf512) {
   Source source(settings_of(0));
   const DmxSlots slots{};
   std::vector<double> listed_s;
@@ -138,7 +138,7 @@ TEST(SacnExtendedSource, ListsWhatItSendsEveryTenSecondsInPagesOf512) {
   EXPECT_TRUE(source.discovery_due(at_ms(90000)).empty());  // nothing is sent
 }
 
-TEST(SacnExtendedSource, SaysPrioritiesOfSlotsBeforeLevelsAndWithinTheRate) {
+TEST(SacnExtendedSource, SendsSlotPrioritiesBeforeLevelsWithinTheRate) {
   Source source(settings_of(0));
   DmxSlots priorities{}, slots{};
   priorities[4] = 120;
@@ -169,7 +169,7 @@ TEST(SacnExtendedSource, SaysPrioritiesOfSlotsBeforeLevelsAndWithinTheRate) {
   for (std::size_t i = 1; i < at.size(); ++i) EXPECT_LE(at[i] - at[i - 1], 1000);
 }
 
-TEST(SacnExtendedSource, ASingleUniverseRestsWhileOthersGoOn) {
+TEST(SacnExtendedSource, PausesASingleUniverseWhileOthersContinue) {
   Source source(settings_of(0));
   const DmxSlots slots{};
   for (const int universe : {1, 2}) (void)source.due(at_ms(0), universe, slots);

@@ -36,7 +36,7 @@ ReceiverSettings hearing(std::vector<int> universes = {1}) {
 int level(Receiver& receiver, double ms) { return receiver.heard(at_ms(ms), 1).levels.slots[0]; }
 DeskPresence presence(Receiver& receiver, double ms) { return receiver.heard(at_ms(ms), 1).presence; }
 
-TEST(SacnInput, KnowsNothingDuringTheSamplingPeriodAndThenShowsTheHighestPriority) {
+TEST(SacnInput, IsUnknownWhileSamplingAndThenShowsTheHighestPriority) {
   Receiver receiver(hearing());
   HandDesk low(1, 100), high(2, 101);
   for (int ms = 0; ms < 1500; ms += 25) {
@@ -49,7 +49,7 @@ TEST(SacnInput, KnowsNothingDuringTheSamplingPeriodAndThenShowsTheHighestPriorit
   EXPECT_EQ(receiver.heard(at_ms(1502), 1).source, "desk 2 and 1 more");
 }
 
-TEST(SacnInput, IsAbsentWhenNobodySends) {
+TEST(SacnInput, IsAbsentWithoutAnySource) {
   Receiver receiver(hearing());
   EXPECT_EQ(presence(receiver, 0), DeskPresence::unknown);
   EXPECT_EQ(presence(receiver, 2499), DeskPresence::unknown);  // a source that is not lost may be silent that long
@@ -64,7 +64,7 @@ void warm_up(Receiver& receiver, std::vector<std::pair<HandDesk*, int>> desks, d
   }
 }
 
-TEST(SacnInput, DropsWhatIsUpToNineteenBehindAndNothingElse) {  // 6.7.2
+TEST(SacnInput, DropsOnlyPacketsUpToNineteenBehind) {  // 6.7.2
   Receiver receiver(hearing());
   HandDesk desk(1);
   warm_up(receiver, {{&desk, 5}});
@@ -79,7 +79,7 @@ TEST(SacnInput, DropsWhatIsUpToNineteenBehindAndNothingElse) {  // 6.7.2
   }
 }
 
-TEST(SacnInput, ALateReaderLosesNobodyWhosePacketsHaveArrived) {
+TEST(SacnInput, KeepsSourcesWhosePacketsAreReadLate) {
   Receiver receiver(hearing());
   HandDesk one(1, 100), two(2, 100);
   warm_up(receiver, {{&one, 77}, {&two, 10}});
@@ -93,7 +93,7 @@ TEST(SacnInput, ALateReaderLosesNobodyWhosePacketsHaveArrived) {
   EXPECT_EQ(presence(receiver, 8501), DeskPresence::absent) << "one that is silent is lost all the same";
 }
 
-TEST(SacnInput, LosesASourceAfterTwoAndAHalfSecondsAndKeepsItsLastLevels) {  // 6.7.1
+TEST(SacnInput, LosesASourceAfterTwoAndAHalfSecondsButKeepsItsLevels) {  // 6.7.1
   Receiver receiver(hearing());
   HandDesk desk(1);
   warm_up(receiver, {{&desk, 77}});
@@ -117,7 +117,7 @@ TEST(SacnInput, ReleasesATerminatedSourceAtOnceWithoutItsLevels) {  // 6.2.6
   EXPECT_EQ(receiver.sources(at_ms(2041), 1), 0u);
 }
 
-TEST(SacnInput, TakesNoPreviewNoTestCodeAndNotItsOwnPackets) {
+TEST(SacnInput, IgnoresPreviewDataTestCodesAndItsOwnPackets) {
   ReceiverSettings settings = hearing();
   HandDesk desk(1), own(9);
   settings.own = own.packet.cid;
@@ -134,7 +134,7 @@ TEST(SacnInput, TakesNoPreviewNoTestCodeAndNotItsOwnPackets) {
 }
 
 /// A new source counts only after 1.5 s (6.6). Between "sampled" and then, the state is never absent.
-TEST(SacnInput, IsNeverAbsentBesideASourceThatIsThereHoweverSeldomAndLateItIsHeard) {
+TEST(SacnInput, IsNeverAbsentWhileARareOrLateSourceIsPresent) {
   for (const int period_ms : {25, 900, 2400}) {
     for (int first_ms = 0; first_ms < period_ms; first_ms += 45) {
       Receiver receiver(hearing());
@@ -152,7 +152,7 @@ TEST(SacnInput, IsNeverAbsentBesideASourceThatIsThereHoweverSeldomAndLateItIsHea
   }
 }
 
-TEST(SacnInput, IsAbsentWithinFourSecondsWhateverComesAndGoes) {
+TEST(SacnInput, IsAbsentWithinFourSecondsDespiteBriefSources) {
   Receiver receiver(hearing());
   for (int ms = 0; ms < 4000; ms += 100) {  // sources that are gone before they count
     HandDesk passing(1 + ms / 1000);
@@ -192,7 +192,7 @@ TEST(SacnInput, MergesEqualPrioritiesByHighestOrByLatest) {
   }
 }
 
-TEST(SacnInput, NeverHandsToALowerPriorityWhileThatMayHaveBeenLostAtTheSameTime) {
+TEST(SacnInput, NeverFallsBackToASourceThatMayBeLostToo) {
   Receiver receiver(hearing());
   HandDesk main(1, 150), backup(2, 100);
   for (double ms = 0; ms <= 3000; ms += 25) {
@@ -204,7 +204,7 @@ TEST(SacnInput, NeverHandsToALowerPriorityWhileThatMayHaveBeenLostAtTheSameTime)
   EXPECT_EQ(presence(receiver, 8000), DeskPresence::absent);
 }
 
-TEST(SacnInput, HandsToTheBackupOnceItIsKnownToBeAlive) {
+TEST(SacnInput, FallsBackToABackupOnceItIsKnownToBeAlive) {
   Receiver receiver(hearing());
   HandDesk main(1, 150), backup(2, 100);
   for (double ms = 0; ms <= 3000; ms += 25) {
@@ -219,7 +219,7 @@ TEST(SacnInput, HandsToTheBackupOnceItIsKnownToBeAlive) {
   EXPECT_EQ(level(receiver, 5526), 90);
 }
 
-TEST(SacnInput, ObeysPrioritiesSlotBySlotAndNoneAtZero) {
+TEST(SacnInput, FollowsSlotPrioritiesAndIgnoresSlotsAtZero) {
   Receiver receiver(hearing());
   HandDesk one(1, 100), two(2, 150);
   DataPacket priorities = one.packet;
@@ -246,7 +246,7 @@ TEST(SacnInput, ObeysPrioritiesSlotBySlotAndNoneAtZero) {
   EXPECT_TRUE(receiver.heard(at_ms(4601), 1).levels.given[1]);
 }
 
-TEST(SacnInput, LetsANewSourceWaitForItsPrioritiesBeforeItHasASay) {
+TEST(SacnInput, IgnoresANewSourceUntilItsPrioritiesArrive) {
   Receiver receiver(hearing());
   HandDesk desk(1, 100), late(2, 150);
   warm_up(receiver, {{&desk, 20}});
@@ -263,7 +263,7 @@ std::vector<std::uint8_t> sync(std::uint8_t sequence, std::uint16_t universe = 9
   return encode(SyncPacket{HandDesk(1).packet.cid, sequence, universe});
 }
 
-TEST(SacnInput, HoldsSynchronisedDataUntilItsPacketAndActsAtOnceBeforeTheFirst) {  // 11.1
+TEST(SacnInput, HoldsSynchronisedDataOnlyAfterTheFirstSynchronisation) {  // 11.1
   Receiver receiver(hearing());
   HandDesk desk(1);
   desk.packet.sync_universe = 9;
@@ -281,7 +281,7 @@ TEST(SacnInput, HoldsSynchronisedDataUntilItsPacketAndActsAtOnceBeforeTheFirst) 
   EXPECT_EQ(level(receiver, 2029), 60);
 }
 
-TEST(SacnInput, FreezesOrGoesOnWhenSynchronisationIsLostAsTheSourceSays) {
+TEST(SacnInput, FreezesOrContinuesAfterLostSynchronisationByForceSync) {
   for (const bool force : {false, true}) {
     Receiver receiver(hearing());
     HandDesk desk(1);

@@ -22,7 +22,7 @@ TEST(SacnSource, SendsEveryCycleWhenContinuous) {
   EXPECT_EQ(packets, 440);
 }
 
-TEST(SacnSource, KeepsToTheDmxRateHoweverOftenItIsAsked) {
+TEST(SacnSource, KeepsToTheDmxRateHoweverOftenItIsCalled) {
   Source source({});
   DmxSlots slots{};
   int packets = 0;
@@ -34,7 +34,7 @@ TEST(SacnSource, KeepsToTheDmxRateHoweverOftenItIsAsked) {
   EXPECT_GE(packets, 438);
 }
 
-TEST(SacnSource, DoesNotHalveItsRateForACallerThatIsSometimesEarly) {
+TEST(SacnSource, KeepsItsRateForACallerThatIsSometimesEarly) {
   Source source({});
   const DmxSlots slots{};
   int packets = 0;
@@ -66,7 +66,7 @@ TEST(SacnSource, SuppressesUnchangedDataAfterThreeRepeatsAndKeepsAlive) {
   EXPECT_TRUE(source.due(at_ms(4001), 1, slots));
 }
 
-TEST(SacnSource, CountsEachUniverseByItselfAndWrapsAround) {
+TEST(SacnSource, CountsSequencesPerUniverseAndWrapsAround) {
   Source source({});
   const DmxSlots slots{};
   int last = -1;
@@ -83,7 +83,7 @@ TEST(SacnSource, CountsEachUniverseByItselfAndWrapsAround) {
   }
 }
 
-TEST(SacnSource, IsHeardAtItsSecondPacketAfterARestartWhateverWasSentBefore) {
+TEST(SacnSource, IsHeardByItsSecondPacketAfterARestart) {
   // The receiver's rule of clause 6.7.2, with the sequence it remembers from before the restart.
   for (int remembered = 0; remembered < 256; ++remembered) {
     Source source({});
@@ -101,7 +101,7 @@ TEST(SacnSource, IsHeardAtItsSecondPacketAfterARestartWhateverWasSentBefore) {
   }
 }
 
-TEST(SacnSource, SaysGoodbyeWithTheTerminatedBitAndGoesOnCountingAfterwards) {
+TEST(SacnSource, SendsGoodbyesWithTheTerminatedBitAndKeepsCounting) {
   Source source({});
   DmxSlots slots{};
   slots[0] = 77;
@@ -119,7 +119,7 @@ TEST(SacnSource, SaysGoodbyeWithTheTerminatedBitAndGoesOnCountingAfterwards) {
   EXPECT_EQ(again.sequence, before + 2);
 }
 
-TEST(SacnSource, DerivesOneCidForOneBusOfOneRigOnOneHost) {
+TEST(SacnSource, DerivesItsCidFromHostRigAndBus) {
   const Cid cid = derive_cid("host", "gallery", "dmx");
   EXPECT_EQ(cid, derive_cid("host", "gallery", "dmx"));
   EXPECT_NE(cid, derive_cid("other", "gallery", "dmx"));
@@ -143,7 +143,7 @@ TEST(SacnSource, ReadsACidAsUuidgenPrintsIt) {
 }
 
 // This acknowledges a blackout.
-TEST(SacnSource, LevelsAreSentWhenTheirPacketHasGoneOutAndNotBefore) {
+TEST(SacnSource, LevelsCountAsSentOnlyAfterTheirPacket) {
   for (const bool continuous : {false, true}) {
     for (const bool with_priorities : {false, true}) {
       SourceSettings settings;
@@ -175,7 +175,7 @@ TEST(SacnSource, LevelsAreSentWhenTheirPacketHasGoneOutAndNotBefore) {
   }
 }
 
-TEST(SacnSource, LevelsWaitForPrioritiesThatAreDueBetween) {
+TEST(SacnSource, LevelsWaitForDuePriorities) {
   Source source({});
   source.set_slot_priorities(1, DmxSlots{});
   DmxSlots lit{};

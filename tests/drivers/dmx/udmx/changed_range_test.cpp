@@ -5,7 +5,7 @@
 namespace luxrig::udmx {
 namespace {
 
-TEST(ChangedRange, IsNothingOneSlotOrFromTheFirstToTheLastChange) {
+TEST(ChangedRange, SpansFromTheFirstToTheLastChange) {
   DmxSlots known{}, wanted{};
   EXPECT_FALSE(changed_range(known, wanted));
   wanted[7] = 1;

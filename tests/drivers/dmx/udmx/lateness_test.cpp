@@ -25,7 +25,7 @@ struct Fade {
   }
 };
 
-TEST(Lateness, OfOneThatKeepsUpIsNone) {
+TEST(Lateness, OfADeviceThatKeepsUpIsZero) {
   Fade fade;
   fade.cycles(1000, true);
   EXPECT_EQ(fade.lateness.late_for(), Duration{});
@@ -33,7 +33,7 @@ TEST(Lateness, OfOneThatKeepsUpIsNone) {
   EXPECT_EQ(fade.lateness.transfers(), 250u) << "of 5 s";
 }
 
-TEST(Lateness, OfRefusalsThatTheNextTransferMendsIsNone) {
+TEST(Lateness, OfRefusalsRepairedByTheNextTransferIsZero) {
   Fade fade;
   for (int i = 0; i < 300; ++i) {
     fade.cycles(1, true);
@@ -76,7 +76,7 @@ TEST(Lateness, AddsUpOverTheWindow) {
   EXPECT_FALSE(fade.lateness.should_be_known()) << "now and then";
 }
 
-TEST(Lateness, OfTheCallerDoesNotCount) {
+TEST(Lateness, IgnoresDelaysOfTheCaller) {
   Fade fade;
   for (int i = 0; i < 20; ++i) {
     fade.cycles(5, true);
@@ -86,7 +86,7 @@ TEST(Lateness, OfTheCallerDoesNotCount) {
   EXPECT_FALSE(fade.lateness.should_be_known());
 }
 
-TEST(Lateness, IsNoneWhereNothingNewIsAsked) {
+TEST(Lateness, IsZeroWithoutNewLevels) {
   Lateness lateness;
   Time now{};
   for (int i = 0; i < 1000; ++i) lateness.step(now += milliseconds(20), true);

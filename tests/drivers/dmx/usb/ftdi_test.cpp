@@ -22,7 +22,7 @@ TEST(Ftdi, RequestsAreAsPublished) {
   EXPECT_EQ(get_modem_status(only), (UsbSetup{0xc0, 5, 0, 0}));
 }
 
-TEST(Ftdi, PortsOfAChipWithSeveralHaveTheirOwnEndpoints) {
+TEST(Ftdi, PortsOfAMultiPortChipHaveTheirOwnEndpoints) {
   EXPECT_EQ(Port{}.bulk_out(), 0x02);
   EXPECT_EQ(Port{}.bulk_in(), 0x81);
   EXPECT_EQ(Port{1}.bulk_out(), 0x02);
@@ -31,7 +31,7 @@ TEST(Ftdi, PortsOfAChipWithSeveralHaveTheirOwnEndpoints) {
   EXPECT_EQ(Port{2}.interface(), 1);
 }
 
-TEST(Ftdi, EveryPacketLosesItsTwoStatusBytes) {
+TEST(Ftdi, StripsTheTwoStatusBytesOfEveryPacket) {
   EXPECT_TRUE(received_bytes({}).empty());
   EXPECT_TRUE(received_bytes(from_hex("01")).empty());
   EXPECT_TRUE(received_bytes(from_hex("01 60")).empty());
@@ -41,7 +41,7 @@ TEST(Ftdi, EveryPacketLosesItsTwoStatusBytes) {
   EXPECT_EQ(received_bytes(two), std::vector<std::uint8_t>(62 + 3, 0xaa));
 }
 
-TEST(Ftdi, TheTransmitterIsEmptyWhenItsLineStatusSaysSo) {
+TEST(Ftdi, TransmitterIsEmptyWhenTheLineStatusReportsIt) {
   EXPECT_TRUE(transmitter_is_empty(from_hex("01 60")));
   EXPECT_FALSE(transmitter_is_empty(from_hex("01 20")));  // only the holding register
   EXPECT_FALSE(transmitter_is_empty(from_hex("01")));

@@ -21,7 +21,7 @@ WidgetBytes widget_said(EnttecWidget& widget, const std::string& hex) {
   return widget.take(usb_at(0), 4096);
 }
 
-TEST(EnttecWidget, AnswersAsTheSpecificationHasIt) {
+TEST(EnttecWidget, AnswersAsSpecified) {
   EnttecWidget widget;
   EXPECT_EQ(widget_said(widget, "7e 03 02 00 00 00 e7"), from_hex("7e 03 05 00 44 01 09 01 28 e7"));
   EXPECT_EQ(widget_said(widget, "7e 0a 00 00 e7"), from_hex("7e 0a 04 00 12 34 56 02 e7"));
@@ -34,7 +34,7 @@ TEST(EnttecWidget, AnswersAsTheSpecificationHasIt) {
   EXPECT_TRUE(widget_said(widget, "7e 4d 00 00 e7 7e 4e 00 00 e7").empty());
 }
 
-TEST(EnttecWidget, RepeatsItsLastPacketUntilAnotherRequestThanThreeOrSix) {
+TEST(EnttecWidget, RepeatsItsLastPacketUntilARequestOtherThanThreeOrSix) {
   EnttecWidget widget;
   widget.power_on(usb_at(0));
   EXPECT_FALSE(widget.line(usb_at(0)));
@@ -51,7 +51,7 @@ TEST(EnttecWidget, RepeatsItsLastPacketUntilAnotherRequestThanThreeOrSix) {
   EXPECT_EQ(widget.stops(), 1u);
 }
 
-TEST(EnttecWidget, AsksItsLineWhenItsFirmwareHasRdm) {
+TEST(EnttecWidget, ForwardsRdmWhenItsFirmwareSupportsIt) {
   EnttecWidget widget;
   EXPECT_TRUE(widget_said(widget, "7e 07 02 00 cc 01 e7").empty()) << "firmware 1 has no RDM";
   WidgetBytes asked;
@@ -66,7 +66,7 @@ TEST(EnttecWidget, AsksItsLineWhenItsFirmwareHasRdm) {
   EXPECT_EQ(widget_said(widget, "7e 0b 03 00 cc 01 18 e7"), from_hex("7e 0c 00 00 e7"));
 }
 
-TEST(EnttecWidget, IgnoresPacketsThatAreTooShortOrOfAnotherStartCode) {
+TEST(EnttecWidget, IgnoresShortPacketsAndOtherStartCodes) {
   EnttecWidget widget;
   (void)widget_said(widget, "7e 06 04 00 00 0a 14 1e e7");
   EXPECT_EQ(widget.frames(), 0u);
@@ -77,14 +77,14 @@ TEST(EnttecWidget, IgnoresPacketsThatAreTooShortOrOfAnotherStartCode) {
   EXPECT_EQ(widget.frames(), 0u);
 }
 
-TEST(EnttecWidget, FindsTheNextMessageBehindNoise) {
+TEST(EnttecWidget, FindsTheNextMessageAfterNoise) {
   EnttecWidget widget;
   EXPECT_EQ(widget_said(widget, "00 7e ff ff ff 7e 03 02 00 00 00 e6 7e 0a 00 00 e7"),
             from_hex("7e 0a 04 00 12 34 56 02 e7"));
   EXPECT_EQ(widget.dropped(), 12u);
 }
 
-TEST(FtdiChip, BytesComeBehindTwoStatusBytesAndNothingOnlyAfterTheLatency) {
+TEST(FtdiChip, PrefixesStatusBytesAndDelaysEmptyAnswersByItsLatency) {
   EnttecWidget widget;
   FtdiChip chip(widget, "x", "y", false);
   chip.power_on(usb_at(0));
@@ -119,7 +119,7 @@ struct FtdiCable {
   WidgetBytes slots = WidgetBytes(513, 0);
 };
 
-TEST(DmxLine, APacketTakes22Point6MillisecondsAndIsWhole) {
+TEST(DmxLine, AWholePacketTakes22Point6Milliseconds) {
   FtdiCable cable;
   cable.slots[1] = 99;
   cable.packet(10);
@@ -131,7 +131,7 @@ TEST(DmxLine, APacketTakes22Point6MillisecondsAndIsWhole) {
   EXPECT_EQ(status.data[1] & 0x40, 0);
 }
 
-TEST(DmxLine, DataWithoutABreakInABreakOrAtAnotherRateIsNoPacket) {
+TEST(DmxLine, DataWithoutABreakWithinABreakOrAtAnotherRateIsNoPacket) {
   FtdiCable none;
   (void)none.chip.bulk_out(usb_at(5), 0x02, none.slots);
   EXPECT_EQ(none.line.packets(), 0u);
@@ -164,7 +164,7 @@ TEST(DmxLine, FallsSilentOneSecondAfterItsLastPacket) {
   EXPECT_FALSE(cable.line.line(usb_at(1100)));
 }
 
-TEST(UdmxWidget, TakesRangesAndSingleChannelsAndRefusesWhatRunsPastTheEnd) {
+TEST(UdmxWidget, AcceptsRangesAndSingleChannelsButNotPastTheEnd) {
   UdmxWidget widget;
   widget.power_on(usb_at(0));
   EXPECT_FALSE(widget.line(usb_at(0)));

@@ -89,7 +89,7 @@ TEST(ArtnetFarEnd, RefusesEveryOtherHeader) {
   }
 }
 
-TEST(ArtnetFarEnd, TakesLaterProtocolVersionsAndNoEarlierOnes) {
+TEST(ArtnetFarEnd, AcceptsLaterProtocolVersionsButNoEarlierOnes) {
   for (const auto& [version, good] : {std::pair{0, false}, {13, false}, {14, true}, {15, true}, {0x0100, true}}) {
     Packet packet = two_slots();
     packet[10] = static_cast<std::uint8_t>(version >> 8);
@@ -98,7 +98,7 @@ TEST(ArtnetFarEnd, TakesLaterProtocolVersionsAndNoEarlierOnes) {
   }
 }
 
-TEST(ArtnetFarEnd, RefusesLengthsThatAreOddNoneTooManyOrNotThere) {
+TEST(ArtnetFarEnd, RefusesOddZeroExcessiveAndTruncatedLengths) {
   for (const auto& [length, good] : {std::pair{0, false},
                                      {1, false},
                                      {2, true},
@@ -122,7 +122,7 @@ TEST(ArtnetFarEnd, RefusesLengthsThatAreOddNoneTooManyOrNotThere) {
   EXPECT_FALSE(decode_art_dmx(net));  // a net has 7 bits
 }
 
-TEST(ArtnetFarEnd, PutsOutItsOwnPortsAndNoOthers) {
+TEST(ArtnetFarEnd, OutputsOnlyItsOwnPorts) {
   ArtnetNode node({kPort});
   EXPECT_FALSE(node.levels(kPort, at_s(0)));
   EXPECT_TRUE(node.receive(at_s(0), kDesk, two_slots()).empty());
@@ -183,7 +183,7 @@ TEST(ArtnetFarEnd, AnswersAPollWithEveryFieldOfItsReply) {
   EXPECT_EQ(Packet(reply.begin() + 218, reply.end()), Packet(21, 0));
 }
 
-TEST(ArtnetFarEnd, GivesFourPortsOfOneSubNetAPage) {
+TEST(ArtnetFarEnd, ListsFourPortsOfOneSubNetPerPage) {
   ArtnetNode node({1, 2, 3, 4, 5, 0x10, 0x7f0f});
   Packet longer = art_poll();
   longer.resize(22, 0);  // as newer controllers send it
@@ -199,7 +199,7 @@ TEST(ArtnetFarEnd, GivesFourPortsOfOneSubNetAPage) {
   for (std::size_t page = 0; page < 4; ++page) EXPECT_EQ(replies[page][211], page + 1);
 }
 
-TEST(ArtnetFarEnd, DropsExactlyTheTwentyNumbersThatAreOutOfOrderAndZeroMeansNoOrder) {
+TEST(ArtnetFarEnd, DropsTheTwentyOutOfOrderNumbersAndAcceptsAnyAtZero) {
   for (const int last : {0, 1, 19, 128, 255}) {
     for (int next = 0; next < 256; ++next) {
       ArtnetNode node({kPort});
@@ -213,7 +213,7 @@ TEST(ArtnetFarEnd, DropsExactlyTheTwentyNumbersThatAreOutOfOrderAndZeroMeansNoOr
   }
 }
 
-TEST(ArtnetFarEnd, MergesTwoSourcesSaysSoAndIgnoresAThird) {
+TEST(ArtnetFarEnd, MergesTwoSourcesReportsItAndIgnoresAThird) {
   ArtnetNode node({kPort});
   node.receive(at_s(0), kDesk, levels_of(40));
   node.receive(at_s(0), kOther, levels_of(90));
@@ -236,7 +236,7 @@ TEST(ArtnetFarEnd, ForgetsASourceAfterTenSecondsAndHoldsTheLookOfTheLast) {
   EXPECT_EQ(first_slot(node, at_s(1001)), 7);
 }
 
-TEST(ArtnetFarEnd, WaitsForArtSyncOnceItHasHeardOneAndGoesOnFourSecondsAfterTheLast) {
+TEST(ArtnetFarEnd, WaitsForArtSyncOnceHeardUntilFourSecondsAfterTheLast) {
   ArtnetNode node({kPort});
   node.receive(at_s(0), kDesk, levels_of(10));
   EXPECT_EQ(first_slot(node, at_s(0)), 10);
@@ -252,7 +252,7 @@ TEST(ArtnetFarEnd, WaitsForArtSyncOnceItHasHeardOneAndGoesOnFourSecondsAfterTheL
   EXPECT_EQ(first_slot(node, at_s(4.5)), 40);
 }
 
-TEST(ArtnetFarEnd, IgnoresArtSyncFromAnybodyButItsSource) {
+TEST(ArtnetFarEnd, IgnoresArtSyncFromOthersThanItsSource) {
   ArtnetNode node({kPort});
   node.receive(at_s(0), kDesk, levels_of(10));
   node.receive(at_s(0.1), kOther, art_sync());

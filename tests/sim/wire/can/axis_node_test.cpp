@@ -55,7 +55,7 @@ TEST(AxisNode, BootsAndObeysNmt) {
   EXPECT_EQ(node.run(300), "") << "it has forgotten the heartbeat";
 }
 
-TEST(AxisNode, ReadsAndWritesObjectsAndNamesWhatItRefuses) {
+TEST(AxisNode, ReadsAndWritesObjectsAndExplainsRefusals) {
   Node node;
   (void)node.said();
   EXPECT_EQ(node.answer("605#4000100000000000"), "585#4300100092010200");
@@ -96,7 +96,7 @@ void map_pdos(Node& node) {
   }
 }
 
-TEST(AxisNode, ItsPdosAreMappedInTheRightOrderOnly) {
+TEST(AxisNode, MapsItsPdosOnlyInTheRightOrder) {
   Node node;
   (void)node.said();
   EXPECT_EQ(node.answer("605#2300140105020000").substr(0, 6), "585#60");
@@ -114,7 +114,7 @@ TEST(AxisNode, ItsPdosAreMappedInTheRightOrderOnly) {
 }
 
 /// RPDO 2 off, no entries, then 6081:32 as its first and the number of entries.
-TEST(AxisNode, WhereNoPdoCarriesItsLimitsTheMappingIsRefusedByTheNameGiven) {
+TEST(AxisNode, RefusesAnUnmappableMappingWithTheGivenCode) {
   struct Refusal {
     std::uint32_t code;
     const char* entry;
@@ -139,7 +139,7 @@ TEST(AxisNode, WhereNoPdoCarriesItsLimitsTheMappingIsRefusedByTheNameGiven) {
   }
 }
 
-TEST(AxisNode, ActsAndAnswersOnTheSync) {
+TEST(AxisNode, ActsAndAnswersOnSync) {
   Node node;
   map_pdos(node);
   EXPECT_EQ(node.answer("080#"), "") << "not before it is operational";
@@ -152,7 +152,7 @@ TEST(AxisNode, ActsAndAnswersOnTheSync) {
   EXPECT_EQ(node.answer("080#"), "085#1082000000000000 185#31060000000000") << "too short: emergency 8210";
 }
 
-TEST(AxisNode, ALostMasterStopsItAndIsSaid) {
+TEST(AxisNode, StopsAndReportsALostMaster) {
   Node node;
   (void)node.said();
   (void)node.answer("605#2B07600003000000");

@@ -52,7 +52,7 @@ TEST(ModbusRtuSession, AnswersThePublishedRequests) {
   EXPECT_EQ(all_of(session.receive(at_s(3), from_hex("11 03 006b 0003 7687"), units)), from_hex("11 83 02 c134"));
 }
 
-TEST(ModbusRtuSession, ADoubledAnswerIsTheSameTwice) {
+TEST(ModbusRtuSession, SendsADuplicatedAnswerTwice) {
   LineUnits units;
   units.wrong.duplicated = true;
   ModbusRtuSession session;
@@ -61,7 +61,7 @@ TEST(ModbusRtuSession, ADoubledAnswerIsTheSameTwice) {
   for (const LinePiece& piece : pieces) EXPECT_EQ(piece.bytes, from_hex("01 03 04 0007a120 33ba"));
 }
 
-TEST(ModbusRtuSession, AnswersNobodyElsesNorBrokenNorEverybodysRequests) {
+TEST(ModbusRtuSession, AnswersNoForeignBrokenOrBroadcastRequests) {
   LineUnits units;
   ModbusRtuSession session;
   EXPECT_TRUE(session.receive(at_s(0), from_hex("01 03 0002 0002 65cc"), units).empty());  // checksum
@@ -76,7 +76,7 @@ TEST(ModbusRtuSession, AnswersNobodyElsesNorBrokenNorEverybodysRequests) {
   EXPECT_TRUE(units.written.empty());
 }
 
-TEST(ModbusRtuSession, JoinsAFrameThatComesInPiecesAndForgetsAHalfAfterSilence) {
+TEST(ModbusRtuSession, JoinsFragmentsAndDropsAnIncompleteFrameAfterSilence) {
   LineUnits units;
   ModbusRtuSession session;
   const LineFrame request = from_hex("01 03 0002 0002 65cb");
@@ -88,7 +88,7 @@ TEST(ModbusRtuSession, JoinsAFrameThatComesInPiecesAndForgetsAHalfAfterSilence) 
   EXPECT_FALSE(session.receive(at_s(1.1), request, units).empty());
 }
 
-TEST(ModbusRtuSession, SpoilsAnAnswerAsTheFaultSays) {
+TEST(ModbusRtuSession, CorruptsAnAnswerAsItsFaultDemands) {
   const LineFrame request = from_hex("01 03 0002 0002 65cb"), right = from_hex("01 03 04 0007a120 33ba");
   LineUnits units;
   ModbusRtuSession session;
@@ -113,7 +113,7 @@ TEST(ModbusRtuSession, SpoilsAnAnswerAsTheFaultSays) {
   EXPECT_EQ(all_of(halves), right);
 }
 
-TEST(LineNumbers, StandAsManualsWriteThem) {
+TEST(LineNumbers, FollowEveryWordOrderOfManuals) {
   using Words = std::vector<std::uint16_t>;
   const RegisterFormat single{2, RegisterNumber::floating, false, false},
       swapped{2, RegisterNumber::floating, true, true};

@@ -139,7 +139,7 @@ TEST(ModbusFarEnd, RefusesEveryOtherFunctionWithException1) {
   }
 }
 
-TEST(ModbusFarEnd, RefusesRegistersThatAreNotThereWithException2) {
+TEST(ModbusFarEnd, RefusesMissingRegistersWithException2) {
   TwoUnits units;
   EXPECT_EQ(pdu({3, 0, 9, 0, 1}, units), (Bytes{0x83, 2}));
   EXPECT_EQ(pdu({3, 0, 11, 0, 2}, units), (Bytes{0x83, 2}));       // the second one is missing
@@ -166,13 +166,13 @@ TEST(ModbusFarEnd, RefusesCountsAndValuesOutOfRangeWithException3) {
   EXPECT_EQ((units.registers[{10, false, 10}]), 0);
 }
 
-TEST(ModbusFarEnd, AWriteThatIsRefusedInPartWritesNothing) {
+TEST(ModbusFarEnd, APartlyRefusedWriteWritesNothing) {
   TwoUnits units;
   EXPECT_EQ(pdu({16, 0, 10, 0, 2, 4, 0, 5, 0x0f, 0xff}, units), (Bytes{0x90, 3}));
   EXPECT_EQ((units.registers[{10, false, 10}]), 0);
 }
 
-TEST(ModbusFarEnd, EveryTruncationOfARequestIsException3) {
+TEST(ModbusFarEnd, RefusesEveryTruncatedRequestWithException3) {
   TwoUnits units;
   for (const Bytes& whole :
        {Bytes{3, 0, 10, 0, 1}, Bytes{4, 0, 10, 0, 1}, Bytes{6, 0, 10, 0, 1}, Bytes{16, 0, 10, 0, 2, 4, 0, 1, 0, 2}}) {
@@ -185,14 +185,14 @@ TEST(ModbusFarEnd, EveryTruncationOfARequestIsException3) {
   EXPECT_EQ((units.registers[{10, false, 10}]), 0);
 }
 
-TEST(ModbusFarEnd, AGatewaySaysWithException11ThatNobodyIsThere) {
+TEST(ModbusFarEnd, AGatewayReportsAMissingUnitWithException11) {
   TwoUnits units;
   Bytes request = read_meter();
   request[6] = 0x63;
   EXPECT_EQ(answer(request, units), (Bytes{0x00, 0x2a, 0, 0, 0, 3, 0x63, 0x83, 11}));
 }
 
-TEST(ModbusFarEnd, AnswersRequestsThatArriveInAnyPieces) {
+TEST(ModbusFarEnd, AnswersRequestsInAnyFragments) {
   Bytes stream = read_meter();
   for (const std::uint8_t byte : write_two()) stream.push_back(byte);
   for (const std::uint8_t byte : read_meter()) stream.push_back(byte);
@@ -225,7 +225,7 @@ TEST(ModbusFarEnd, HoldsItsAnswerUntilTheLastByteOfARequest) {
   EXPECT_EQ(session.receive({&request.back(), 1}, units).size(), 1u);
 }
 
-TEST(ModbusFarEnd, GivesUpAStreamThatCannotBeModbus) {
+TEST(ModbusFarEnd, AbandonsAStreamThatCannotBeModbus) {
   for (const auto& [at, value] : {std::pair{2, 1}, {3, 1}, {4, 1}, {5, 0}, {5, 1}, {5, 255}}) {
     TwoUnits units;
     ModbusSession session;
@@ -238,14 +238,14 @@ TEST(ModbusFarEnd, GivesUpAStreamThatCannotBeModbus) {
   }
 }
 
-TEST(ModbusFarEnd, ASilentUnitGetsTheWriteLostAndSaysNothing) {
+TEST(ModbusFarEnd, ASilentUnitLosesTheWriteWithoutAnAnswer) {
   TwoUnits units;
   units.trouble.silent = true;
   EXPECT_TRUE(answer(write_two(), units).empty());
   EXPECT_EQ((units.registers[{10, false, 10}]), 0);
 }
 
-TEST(ModbusFarEnd, ASlowUnitStatesByHowMuch) {
+TEST(ModbusFarEnd, ASlowUnitStatesItsDelay) {
   TwoUnits units;
   units.trouble.delay = 300ms;
   ModbusSession session;
@@ -255,7 +255,7 @@ TEST(ModbusFarEnd, ASlowUnitStatesByHowMuch) {
   EXPECT_EQ(replies[0].bytes, meter_answer());
 }
 
-TEST(ModbusFarEnd, AUnitInTroubleAnswersWithItsException) {
+TEST(ModbusFarEnd, AFaultyUnitAnswersWithItsException) {
   TwoUnits units;
   units.trouble.exception = 4;
   EXPECT_EQ(answer(read_meter(), units), (Bytes{0x00, 0x2a, 0, 0, 0, 3, 1, 0x83, 4}));
@@ -268,7 +268,7 @@ bool believable(const Bytes& reply) {
   return reply.size() == 13 && Bytes(reply.begin(), reply.begin() + 9) == Bytes{0x00, 0x2a, 0, 0, 0, 7, 1, 3, 4};
 }
 
-TEST(ModbusFarEnd, AGarbledAnswerIsNeverAGoodOneAndComesInEveryWay) {
+TEST(ModbusFarEnd, GarblesAnswersInEveryWayAndNeverIntoAValidOne) {
   TwoUnits units;
   std::map<std::size_t, int> lengths;
   for (std::uint64_t random = 0; random < 6 * 4096; ++random) {
@@ -283,7 +283,7 @@ TEST(ModbusFarEnd, AGarbledAnswerIsNeverAGoodOneAndComesInEveryWay) {
   for (std::size_t length = 7; length <= 29; ++length) EXPECT_GT(lengths[length], 0) << length;
 }
 
-TEST(ModbusFarEnd, EveryGarbledRefusalStillDiffersFromTheRefusal) {
+TEST(ModbusFarEnd, EveryGarbledRefusalDiffersFromTheRefusal) {
   const Bytes refusal = {0x00, 0x2a, 0, 0, 0, 3, 1, 0x83, 2};
   for (std::uint64_t random = 0; random < 6 * 4096; ++random) {
     EXPECT_NE(garbled_reply(refusal, random * 0x9e3779b97f4a7c15u), refusal) << random;
@@ -318,7 +318,7 @@ class BitUnits final : public ModbusUnits {
 };
 
 // Application Protocol 1.1b3, examples of 6.1, 6.2, 6.5 and 6.11.
-TEST(ModbusSession, HasCoilsAndDiscreteInputsAsTheStandardPrintsThem) {
+TEST(ModbusSession, HandlesCoilsAndDiscreteInputsAsTheStandardPrintsThem) {
   BitUnits units;
   const auto answer = [&](Bytes request) { return answer_pdu(3, request, units); };
   EXPECT_EQ(answer({1, 0, 0x13, 0, 0x13}), (Bytes{1, 3, 0xcd, 0x6b, 0x05}));
@@ -329,7 +329,7 @@ TEST(ModbusSession, HasCoilsAndDiscreteInputsAsTheStandardPrintsThem) {
   EXPECT_EQ(units.coils, "1011001110010110101");
 }
 
-TEST(ModbusSession, RefusesBitsThatAreNoneByName) {
+TEST(ModbusSession, RefusesInvalidBitRequestsWithTheirException) {
   BitUnits units;
   const auto answer = [&](int unit, Bytes request) { return answer_pdu(unit, request, units); };
   for (const auto function : Bytes{1, 2, 5, 15})

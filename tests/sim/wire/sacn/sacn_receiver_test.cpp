@@ -116,7 +116,7 @@ TEST(SacnFarEnd, ReadsAWholeUniverse) {
   EXPECT_EQ(data->slots[511], 0xaa);
 }
 
-TEST(SacnFarEnd, ASourceNameThatFillsItsFieldHasNoEndOfItsOwn) {
+TEST(SacnFarEnd, AcceptsASourceNameThatFillsItsField) {
   Packet packet = three_slots();
   std::fill_n(packet.begin() + 44, 64, std::uint8_t{'x'});
   const auto data = decode_sacn_data(packet);
@@ -124,7 +124,7 @@ TEST(SacnFarEnd, ASourceNameThatFillsItsFieldHasNoEndOfItsOwn) {
   EXPECT_EQ(data->source_name, std::string(64, 'x'));
 }
 
-TEST(SacnFarEnd, RefusesEveryTruncationAndAnyTail) {
+TEST(SacnFarEnd, RefusesEveryTruncationAndExtension) {
   for (Packet whole : {three_slots(), sync_9000()}) {
     for (std::size_t length = 0; length < whole.size(); ++length) {
       const Packet cut(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(length));
@@ -137,7 +137,7 @@ TEST(SacnFarEnd, RefusesEveryTruncationAndAnyTail) {
   }
 }
 
-TEST(SacnFarEnd, RefusesEveryChangeOfABytesThatTheStandardFixes) {
+TEST(SacnFarEnd, RefusesEveryChangeOfAFixedByte) {
   const auto unread = [](std::size_t at, bool data) {  // bytes that may differ from packet to packet
     if (at >= 22 && at < 38) return true;
     return data ? (at >= 44 && at < 115) || at >= 125 : at >= 44;
@@ -156,7 +156,7 @@ TEST(SacnFarEnd, RefusesEveryChangeOfABytesThatTheStandardFixes) {
   }
 }
 
-TEST(SacnFarEnd, RefusesAPriorityAbove200AndUniversesThatDoNotExist) {
+TEST(SacnFarEnd, RefusesPrioritiesAbove200AndInvalidUniverses) {
   Packet packet = three_slots();
   packet[kPriority] = 200;
   EXPECT_TRUE(decode_sacn_data(packet));
@@ -189,7 +189,7 @@ TEST(SacnFarEnd, ShowsNothingBeforeItsFirstData) {
   EXPECT_EQ((*levels)[3], 0);
 }
 
-TEST(SacnFarEnd, DropsExactlyTheTwentyNumbersThatAreOutOfOrder) {
+TEST(SacnFarEnd, DropsExactlyTheTwentyOutOfOrderNumbers) {
   for (const int last : {0, 5, 19, 128, 250, 255}) {
     for (int next = 0; next < 256; ++next) {
       SacnReceiver receiver;
@@ -205,7 +205,7 @@ TEST(SacnFarEnd, DropsExactlyTheTwentyNumbersThatAreOutOfOrder) {
   }
 }
 
-TEST(SacnFarEnd, CountsTheNumbersOfEachSourceApart) {
+TEST(SacnFarEnd, TracksSequenceNumbersPerSource) {
   SacnReceiver receiver;
   EXPECT_EQ(receiver.receive(at_s(0), packet_of({.source = 1, .sequence = 50})), Verdict::accepted);
   EXPECT_EQ(receiver.receive(at_s(0), packet_of({.source = 2, .sequence = 45})), Verdict::accepted);
@@ -218,7 +218,7 @@ TEST(SacnFarEnd, PreviewDataNeverReachesTheOutputs) {
   EXPECT_EQ(receiver.sources(3, at_s(0)), 0u);
 }
 
-TEST(SacnFarEnd, ATerminatedSourceIsGoneAtOnceAndItsLevelsAreNotUsed) {
+TEST(SacnFarEnd, ATerminatedSourceIsGoneAtOnceWithItsLevels) {
   SacnReceiver receiver;
   receiver.receive(at_s(0), packet_of({.source = 1, .sequence = 9, .level = 200}));
   EXPECT_EQ(receiver.receive(at_s(0.1), packet_of({.source = 1, .sequence = 10, .options = kTerminated, .level = 11})),
@@ -230,7 +230,7 @@ TEST(SacnFarEnd, ATerminatedSourceIsGoneAtOnceAndItsLevelsAreNotUsed) {
   EXPECT_EQ(first_slot(receiver, at_s(0.2)), 30);
 }
 
-TEST(SacnFarEnd, OnlyTheHighestPriorityPresentCounts) {
+TEST(SacnFarEnd, OnlyTheHighestPresentPriorityCounts) {
   SacnReceiver receiver;
   receiver.receive(at_s(0), packet_of({.source = 1, .priority = 100, .level = 200}));
   receiver.receive(at_s(0), packet_of({.source = 2, .priority = 150, .level = 20}));
@@ -239,7 +239,7 @@ TEST(SacnFarEnd, OnlyTheHighestPriorityPresentCounts) {
   EXPECT_EQ(first_slot(receiver, at_s(0.1)), 200);
 }
 
-TEST(SacnFarEnd, AmongEqualPrioritiesTheHighestTakesPrecedenceSlotBySlot) {
+TEST(SacnFarEnd, MergesEqualPrioritiesByTheHighestSlotValue) {
   SacnReceiver receiver;
   Packet one = packet_of({.source = 1, .level = 200}), other = packet_of({.source = 2, .level = 20});
   other[kSlots + 1] = 77;
@@ -252,7 +252,7 @@ TEST(SacnFarEnd, AmongEqualPrioritiesTheHighestTakesPrecedenceSlotBySlot) {
   EXPECT_EQ((*levels)[2], 3);
 }
 
-TEST(SacnFarEnd, ASourceIsLostAfterTwoAndAHalfSecondsAndTheLastLookIsHeld) {
+TEST(SacnFarEnd, ASourceIsLostAfterTwoAndAHalfSecondsHoldingItsLook) {
   SacnReceiver receiver;
   receiver.receive(at_s(1), packet_of({.sequence = 9, .level = 200}));
   EXPECT_EQ(receiver.sources(3, at_s(1) + 2500ms), 1u);
@@ -284,7 +284,7 @@ TEST(SacnFarEnd, DataForAnotherStartCodeChangesNothing) {
   EXPECT_FALSE(receiver.levels(3, at_s(0)));
 }
 
-TEST(SacnFarEnd, SlotsThatAPacketDoesNotNameStayAsTheyWere) {
+TEST(SacnFarEnd, KeepsSlotsThatAPacketDoesNotCarry) {
   SacnReceiver receiver;
   receiver.receive(at_s(0), packet_of({.sequence = 0, .level = 9}));
   Packet shorter = packet_of({.sequence = 1, .level = 8});
@@ -296,7 +296,7 @@ TEST(SacnFarEnd, SlotsThatAPacketDoesNotNameStayAsTheyWere) {
   EXPECT_EQ((*levels)[1], 2);
 }
 
-TEST(SacnFarEnd, SynchronisedDataActsAtOnceUntilASynchronisationIsHeardAndThenWaits) {
+TEST(SacnFarEnd, SynchronisedDataWaitsOnlyOnceASynchronisationWasHeard) {
   SacnReceiver receiver;
   receiver.receive(at_s(0), packet_of({.sequence = 0, .level = 10, .sync_universe = 9000}));
   EXPECT_EQ(first_slot(receiver, at_s(0)), 10);
@@ -321,7 +321,7 @@ TEST(SacnFarEnd, ASynchronisationForAnotherUniverseReleasesNothing) {
   EXPECT_EQ(receiver.receive(at_s(0.2), other), Verdict::ignored);  // E1.31 6.3.3: universe 0 synchronises nothing
 }
 
-TEST(SacnFarEnd, WhenSynchronisationStopsForceSyncSaysGoOnOrFreeze) {
+TEST(SacnFarEnd, ForceSyncDecidesToContinueOrFreezeWhenSynchronisationStops) {
   for (const bool go_on : {true, false}) {
     SacnReceiver receiver;
     const std::uint8_t options = go_on ? kForceSync : 0;

@@ -39,7 +39,7 @@ const std::string kSetRange =
     "aabb";
 const std::string kUsbipZeros = "00000000 00000000 00000000 ";
 
-TEST(UsbipSession, ListsAndGivesItsDevice) {
+TEST(UsbipSession, ListsAndExportsItsDevice) {
   UsbipServer server;
   const UsbipBytes list = server.say(0, "0111 8005 00000000");
   ASSERT_EQ(list.size(), 12u + 312u + 4u);
@@ -57,7 +57,7 @@ TEST(UsbipSession, ListsAndGivesItsDevice) {
   EXPECT_EQ(UsbipBytes(reply.begin(), reply.begin() + 8), from_hex("0111 0003 00000000"));
 }
 
-TEST(UsbipSession, RefusesADeviceThatItHasNot) {
+TEST(UsbipSession, RefusesAnUnknownDevice) {
   UsbipServer server;
   UsbipBytes request = from_hex("0111 8003 00000000 392d39");
   request.resize(40);
@@ -65,7 +65,7 @@ TEST(UsbipSession, RefusesADeviceThatItHasNot) {
   EXPECT_EQ(server.session.take_output(), from_hex("0111 0003 00000001"));
 }
 
-TEST(UsbipSession, DoesATransferAndAnswersWhenTheDeviceIsDone) {
+TEST(UsbipSession, AnswersATransferWhenTheDeviceIsDone) {
   UsbipServer server;
   server.import();
   EXPECT_TRUE(server.say(10, kSetRange).empty());  // low speed needs 1.5 ms
@@ -81,7 +81,7 @@ TEST(UsbipSession, DoesATransferAndAnswersWhenTheDeviceIsDone) {
   EXPECT_EQ(look->at(5), 0xbb);
 }
 
-TEST(UsbipSession, GivesDescriptorsCutToWhatWasAskedFor) {
+TEST(UsbipSession, TruncatesDescriptorsToTheRequestedLength) {
   UsbipServer server;
   server.import();
   const UsbipBytes reply =
@@ -93,7 +93,7 @@ TEST(UsbipSession, GivesDescriptorsCutToWhatWasAskedFor) {
                             "0000000000000000 12 01 1001 ff 00 00 08"));
 }
 
-TEST(UsbipSession, WhatIsNotUnderstoodStalls) {
+TEST(UsbipSession, StallsUnknownRequests) {
   UsbipServer server;
   server.import();
   (void)server.say(1,
@@ -106,7 +106,7 @@ TEST(UsbipSession, WhatIsNotUnderstoodStalls) {
                             "0000000000000000"));  // -32: EPIPE
 }
 
-TEST(UsbipSession, ATransferThatHangsEndsWhenItIsUnlinked) {
+TEST(UsbipSession, AHangingTransferEndsWhenUnlinked) {
   UsbipServer server([] {
     Disturbance disturbance;
     disturbance.silent = true;
@@ -130,14 +130,14 @@ TEST(UsbipSession, ATransferThatHangsEndsWhenItIsUnlinked) {
   EXPECT_EQ(server.session.take_output(), wanted);
 }
 
-TEST(UsbipSession, TakesItsCommandsByteByByte) {
+TEST(UsbipSession, AcceptsCommandsByteByByte) {
   UsbipServer server;
   server.import();
   for (const std::uint8_t byte : from_hex(kSetRange)) server.session.receive(usbip_at(1), {&byte, 1});
   EXPECT_EQ(server.session.begun(), 1u);
 }
 
-TEST(UsbipSession, HangsUpOnWhatIsNoProtocol) {
+TEST(UsbipSession, DisconnectsOnInvalidProtocol) {
   for (const char* nonsense : {"0110 8003 00000000", "0111 9999 00000000", "474554202f20485454502f31"}) {
     UsbipServer server;
     (void)server.say(0, nonsense);

@@ -52,7 +52,7 @@ TEST(CacheAblation, AReferenceOfTheWrongLengthIsRefused) {
   EXPECT_EQ(refused.error().cause, Cause::invalid);
 }
 
-TEST(CacheAblation, WalkAndDistanceFieldGiveTheSameAnswersAndTheMarchMissesWalls) {
+TEST(CacheAblation, WalkAndDistanceFieldAgreeAndTheMarchMissesWalls) {
   const Scene scene = two_rooms(0.5);
   const RayScene rays(scene);
   const auto rows = compare_traversals(scene, rays, 128, 4000, 1, stepped());

@@ -10,7 +10,7 @@ constexpr Entry kCache = {"cache",
 
 INSTANTIATE_TEST_SUITE_P(Bench, EvaluatorConformance, testing::Values(kCache), name_of);
 
-TEST(CacheEvaluator, EndsWithWhatItHasAndTheErrorThatThatHas) {
+TEST(CacheEvaluator, EndsEarlyWithItsResultAndThatResultsError) {
   const Scene scene = two_rooms(0.5);
   const RayScene rays(scene);
   Emitter ball = bulb_at({0.5, 0.5, 1.5});

@@ -15,7 +15,7 @@ double flux_lm(const LightView& view) {
   return sum;
 }
 
-TEST(LightView, AllOfALampsFluxFallsOnTheWallsOfAClosedRoom) {
+TEST(LightView, AllFluxOfALampFallsOnTheWallsOfAClosedRoom) {
   const Scene cube = make_cube(2, 0.5);
   const RayScene rays(cube);
   Emitter area = bulb_at({0.1, 0.2, -0.3});
@@ -29,7 +29,7 @@ TEST(LightView, AllOfALampsFluxFallsOnTheWallsOfAClosedRoom) {
   }
 }
 
-TEST(LightView, FluxFallsOnEachFaceAsTheDistanceLawSays) {
+TEST(LightView, FluxOnEachFaceFollowsTheDistanceLaw) {
   const Scene cube = make_cube(2, 0.5);
   const RayScene rays(cube);
   const Emitter emitter = bulb_at({0.3, -0.2, 0.5});
@@ -52,7 +52,7 @@ TEST(LightView, FluxFallsOnEachFaceAsTheDistanceLawSays) {
     }
 }
 
-TEST(LightView, ALampFlushWithTheCeilingLightsTheRoomAndNotItsOwnCeiling) {
+TEST(LightView, ALampFlushWithTheCeilingLightsOnlyTheRoom) {
   const Scene cube = make_cube(2, 0.5);
   const RayScene rays(cube);
   const Emitter emitter{make_spot(800, rad_from_deg(60), rad_from_deg(89)), lamp_at({0.2, 0.1, 1}, {0.2, 0.1, -1})};
@@ -61,7 +61,7 @@ TEST(LightView, ALampFlushWithTheCeilingLightsTheRoomAndNotItsOwnCeiling) {
   for (const LightViewHit& hit : view.hits) EXPECT_LT(hit.position_world_m.z(), 1 - 1e-6);
 }
 
-TEST(LightView, InOpenAirThereIsNothingToFallOn) {
+TEST(LightView, HasNoHitsInOpenAir) {
   const RayScene nothing{Scene{}};
   EXPECT_TRUE(light_view(nothing, bulb_at(Vec3::Zero()), SobolSequence(1), 64).hits.empty());
 }

@@ -22,7 +22,7 @@ TEST(RadianceCache, AnIntegratingSphereReflectsTheSameLightEverywhere) {
                 0.03 * matrix.lux_per_level(r, 0));
 }
 
-TEST(RadianceCache, InAFurnishedRoomSuchCellsMoveNothingBeyondItsError) {
+TEST(RadianceCache, FewerCellsShiftAFurnishedRoomOnlyWithinItsError) {
   const LitRoom room = make_box_room();
   const RayScene rays(room.scene);
   CacheSettings settings;

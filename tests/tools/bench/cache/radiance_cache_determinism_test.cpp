@@ -10,7 +10,7 @@ namespace {
 
 using namespace radiance_cache_fixture;
 
-TEST(RadianceCache, SameBitsForAnyNumberOfThreads) {
+TEST(RadianceCache, IsTheSameForAnyNumberOfThreads) {
   const auto receivers = receivers_of(cube_wall_grid(2, 4));
   Scene scene = make_cube(2, 0.6);
   scene.materials[0].reflectance_rgb = {0.7, 0.5, 0.2};

@@ -14,7 +14,7 @@ namespace {
 
 using namespace radiance_cache_fixture;
 
-TEST(RadianceCache, AClosedCubeGetsItsFluxOverOneMinusReflectance) {
+TEST(RadianceCache, AClosedCubeReceivesFluxOverOneMinusReflectance) {
   const auto receivers = receivers_of(cube_wall_grid(3, 6));
   for (const double reflectance : {0.2, 0.5, 0.8}) {
     const Scene cube = make_cube(3, reflectance);
@@ -25,7 +25,7 @@ TEST(RadianceCache, AClosedCubeGetsItsFluxOverOneMinusReflectance) {
   }
 }
 
-TEST(RadianceCache, AgreesWithRadiosityAtPointsOfACubeWithinThreePercentAndWithinItsError) {
+TEST(RadianceCache, AgreesWithRadiosityInACubeWithinThreePercentAndItsError) {
   const double reflectance = 0.6, edge_m = 2;
   const Vec3 source_m(0.35, -0.2, 0.45);
   const Scene cube = make_cube(edge_m, reflectance);
@@ -46,7 +46,7 @@ TEST(RadianceCache, AgreesWithRadiosityAtPointsOfACubeWithinThreePercentAndWithi
   EXPECT_GT(static_cast<double>(within), 0.9 * static_cast<double>(matrix.receivers()));
 }
 
-TEST(RadianceCache, NoLightGoesThroughAWallBetweenClosedRooms) {
+TEST(RadianceCache, NoLightPassesAWallBetweenClosedRooms) {
   const Scene scene = two_rooms(0.9);
   std::vector<Receiver> receivers;
   for (double y = 0.1; y < 2; y += 0.3)
@@ -61,7 +61,7 @@ TEST(RadianceCache, NoLightGoesThroughAWallBetweenClosedRooms) {
   }
 }
 
-TEST(RadianceCache, ARoomIsLitAlikeHoweverFarTheGroundReachesBeforeItsDoor) {
+TEST(RadianceCache, ALargeGroundOutsideDoesNotChangeARoomsLight) {
   std::vector<Receiver> receivers;
   for (double x = 0.5; x < 6; x += 0.8)
     for (double y = 0.5; y < 5; y += 0.8) receivers.push_back({{x, y, 0.8}, Vec3::UnitZ()});
@@ -83,7 +83,7 @@ TEST(RadianceCache, ARoomIsLitAlikeHoweverFarTheGroundReachesBeforeItsDoor) {
   }
 }
 
-TEST(RadianceCache, IsRefusedWhereWallsAreThinnerThanRoundingCanTell) {
+TEST(RadianceCache, IsRefusedForWallsThinnerThanRounding) {
   const Scene scene = room_open_to_a_ground(10'000, 0.6);
   const RayScene rays(scene);
   const std::vector<Receiver> receivers = {{{3, 2, 0.8}, Vec3::UnitZ()}, {{1, 4, 0.8}, Vec3::UnitZ()}};
@@ -102,7 +102,7 @@ TEST(RadianceCache, RefusesGlass) {
   EXPECT_NE(cache.error().detail.find("glass"), std::string::npos) << cache.error().detail;
 }
 
-TEST(RadianceCache, WithoutReflectanceThereIsDirectLightOnly) {
+TEST(RadianceCache, WithoutReflectanceGivesDirectLightOnly) {
   const auto receivers = receivers_of(cube_wall_grid(2, 3));
   for (const CacheSettings& settings : all_kinds()) {
     const auto matrix = cached(make_cube(2, 0), receivers, {bulb_at({0.1, 0.2, 0.3})}, settings);
@@ -111,7 +111,7 @@ TEST(RadianceCache, WithoutReflectanceThereIsDirectLightOnly) {
   }
 }
 
-TEST(RadianceCache, ColumnsAreThoseOfTheEmittersAloneInAnyOrder) {
+TEST(RadianceCache, ColumnsMatchSingleEmittersInAnyOrder) {
   const auto receivers = receivers_of(cube_wall_grid(2, 3));
   const Scene cube = make_cube(2, 0.6);
   const RayScene rays(cube);
@@ -136,7 +136,7 @@ TEST(RadianceCache, ColumnsAreThoseOfTheEmittersAloneInAnyOrder) {
   }
 }
 
-TEST(RadianceCache, CellsThatNobodyNeedsCanBeLeftOutWithoutAChange) {
+TEST(RadianceCache, UnneededCellsCanBeOmittedWithoutChange) {
   // The outer faces of the cube and a second room behind a wall are near surfaces, but their cells are not needed.
   const Scene scene = two_rooms(0.6);
   std::vector<Receiver> receivers = {{{0.5, 0.5, 0.01}, Vec3::UnitZ()}, {{1, 1.2, 0.75}, Vec3::UnitZ()}};
@@ -174,7 +174,7 @@ TEST(RadianceCache, MoreReflectionsAddLight) {
   }
 }
 
-TEST(RadianceCache, OneReflectionInACubeIsItsShareOfTheFlux) {
+TEST(RadianceCache, OneReflectionInACubeGivesItsShareOfTheFlux) {
   // Of the flux Φ that falls on the walls, ρΦ leaves them and falls on them again.
   const auto receivers = receivers_of(cube_wall_grid(2, 8));
   CacheSettings settings = quick_sides();
@@ -222,7 +222,7 @@ TEST(RadianceCache, ColouredWallsReflectEachPrimaryByItsOwnReflectance) {
   }
 }
 
-TEST(RadianceCache, OddScenesGiveFiniteLightOfNoLessThanDirect) {
+TEST(RadianceCache, OddScenesGiveFiniteLightNoLessThanDirect) {
   std::mt19937 random(3);
   std::uniform_real_distribution<float> unit(-1, 1);
   const auto any = [&] { return Vec3f(unit(random), unit(random), unit(random)); };
@@ -269,7 +269,7 @@ TEST(RadianceCache, OddScenesGiveFiniteLightOfNoLessThanDirect) {
   EXPECT_LE(refused, 10) << "of 40";
 }
 
-TEST(RadianceCache, TraversalsThatAreExactForTheVoxelsGiveTheSameLight) {
+TEST(RadianceCache, VoxelExactTraversalsGiveTheSameLight) {
   const auto receivers = receivers_of(cube_wall_grid(2, 3));
   Scene scene = make_cube(2, 0.6);
   add_box(scene, {-0.3, -0.2, -1}, {0.2, 0.4, 0.1});

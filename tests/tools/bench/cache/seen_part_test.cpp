@@ -8,7 +8,7 @@
 namespace luxrig {
 namespace {
 
-TEST(SeenPart, IsAllOfAScene) {
+TEST(SeenPart, CoversAWholeClosedScene) {
   const Scene scene = two_rooms(0.5);
   const RayScene rays(scene);
   const std::vector<Receiver> one = {{{1, 1, 0.5}, Vec3::UnitZ()}};
@@ -21,7 +21,7 @@ TEST(SeenPart, IsAllOfAScene) {
   EXPECT_EQ(seen_part_m(scene, rays, outside, 1).max(), part_m.max()) << "nothing is seen";
 }
 
-TEST(SeenPart, IsTheRoomAndItsYardWhereTheGroundReachesFarther) {
+TEST(SeenPart, CoversTheRoomAndItsYardOnALargeGround) {
   const Scene scene = room_open_to_a_ground(1000, 0.5);
   const RayScene rays(scene);
   std::vector<Receiver> receivers;

@@ -10,7 +10,7 @@ namespace {
 
 using namespace side_exchange_fixture;
 
-TEST(SideExchange, InAClosedRoomOfEvenRadiosityEachReflectionKeepsItsShare) {
+TEST(SideExchange, EachReflectionKeepsItsShareInAClosedRoom) {
   for (const double reflectance : {0.3, 0.9}) {
     const Exchange room(make_cube(2, reflectance));
     const SideExchange exchange = room.make(true, 0);
@@ -29,7 +29,7 @@ TEST(SideExchange, InAClosedRoomOfEvenRadiosityEachReflectionKeepsItsShare) {
   }
 }
 
-TEST(SideExchange, SolvedAheadIsTheSameAsReflectionByReflection) {
+TEST(SideExchange, SolvingAheadMatchesReflectionByReflection) {
   const Exchange room(make_cube(2, 0.8));
   for (const int reflections : {0, 1, 3}) {
     const SideExchange exchange = room.make(true, reflections);
@@ -43,7 +43,7 @@ TEST(SideExchange, SolvedAheadIsTheSameAsReflectionByReflection) {
   }
 }
 
-TEST(SideExchange, WhatNobodySeesHasNoRowsAndNoRays) {
+TEST(SideExchange, UnseenSidesHaveNoRowsAndNoRays) {
   const Exchange room(make_cube(2, 0.5));
   const SideExchange needed = room.make(true, 0), all = room.make(false, 0);
   EXPECT_EQ(needed.rows() * 2, all.rows());  // the outer faces are left out

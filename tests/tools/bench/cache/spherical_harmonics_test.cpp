@@ -43,14 +43,14 @@ TEST(SphericalHarmonics, CosineLobeIsTheProjectionOfTheClampedCosine) {
   }
 }
 
-TEST(SphericalHarmonics, EvenRadianceGivesPiTimesItOnEveryPlane) {
+TEST(SphericalHarmonics, UniformRadianceGivesPiTimesItOnEveryPlane) {
   std::mt19937 random(2);
   Harmonics even = Harmonics::Zero();
   even[0] = 3 * std::sqrt(4 * kPi);  // L = 3 in every direction
   for (int i = 0; i < 20; ++i) EXPECT_NEAR(cosine_lobe(any_direction(random)).dot(even), 3 * kPi, 1e-12);
 }
 
-TEST(SphericalHarmonics, IlluminanceOfAnyRadianceOfThreeOrdersIsThatOfNumericIntegration) {
+TEST(SphericalHarmonics, IlluminanceMatchesNumericIntegration) {
   std::mt19937 random(3);
   std::normal_distribution<double> normal;
   for (int i = 0; i < 20; ++i) {

@@ -14,7 +14,7 @@ namespace {
 
 using namespace surface_sides_fixture;
 
-TEST(SurfaceSides, AreasAddUpToThoseOfBothFacesOfEveryTriangle) {
+TEST(SurfaceSides, AreasAddUpToBothFacesOfEveryTriangle) {
   for (const Scene& scene : {make_cube(2, 0.5), make_icosphere(1.3, 3, 0.5), two_rooms(0.5), make_box_room().scene}) {
     const RayScene rays(scene);
     const SurfaceSides sides = sides_of(scene, rays, 24);
@@ -29,7 +29,7 @@ TEST(SurfaceSides, AreasAddUpToThoseOfBothFacesOfEveryTriangle) {
   }
 }
 
-TEST(SurfaceSides, EveryPlaceOfASurfaceFindsASideThatLooksItsWayAndIsNear) {
+TEST(SurfaceSides, EverySurfacePlaceFindsANearSideFacingItsWay) {
   const Scene scene = make_box_room().scene;
   const RayScene rays(scene);
   const VoxelGrid cells = VoxelGrid::around(triangle_bounds_m(scene), 32);
@@ -51,7 +51,7 @@ TEST(SurfaceSides, EveryPlaceOfASurfaceFindsASideThatLooksItsWayAndIsNear) {
   EXPECT_GT(static_cast<double>(own), 0.97 * static_cast<double>(sides.pieces().size()));
 }
 
-TEST(SurfaceSides, AFloorUnderAWallHasOneSideInEachRoomAndNoGroupReachesThrough) {
+TEST(SurfaceSides, AFloorUnderAWallHasASeparateSideInEachRoom) {
   const Scene scene = two_rooms(0.5);
   const RayScene rays(scene);
   for (const int cells : {6, 12, 40}) {
@@ -67,7 +67,7 @@ TEST(SurfaceSides, AFloorUnderAWallHasOneSideInEachRoomAndNoGroupReachesThrough)
   }
 }
 
-TEST(SurfaceSides, TrianglesWithoutAreaAreNoSurface) {
+TEST(SurfaceSides, ZeroAreaTrianglesAreIgnored) {
   Scene scene = make_cube(2, 0.5);
   const std::size_t before = [&] {
     const RayScene rays(scene);
@@ -85,7 +85,7 @@ TEST(SurfaceSides, TrianglesWithoutAreaAreNoSurface) {
   EXPECT_EQ(none.side_at(Vec3::Zero(), Vec3::UnitZ(), cast), SurfaceSides::kNone);
 }
 
-TEST(SurfaceSides, FacingsArePartsOfTheSphereOfAboutEqualSizeAndNoneIsSplitByAnAxis) {
+TEST(SurfaceSides, FacingsDivideTheSphereEvenlyAndNoAxisSplitsOne) {
   std::mt19937 random(1);
   std::normal_distribution<double> normal;
   std::vector<int> count(54, 0);

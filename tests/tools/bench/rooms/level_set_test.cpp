@@ -33,7 +33,7 @@ bool is_closed(const ClosedMesh& mesh) {
 
 Eigen::AlignedBox3d box_of(double half_m) { return {Vec3::Constant(-half_m), Vec3::Constant(half_m)}; }
 
-TEST(LevelSet, OfABallHasItsVolumeToSecondOrderAndLooksOutward) {
+TEST(LevelSet, OfABallHasItsVolumeToSecondOrderAndFacesOutward) {
   double errors[2] = {};
   for (const int halving : {0, 1}) {
     const double cell_m = 0.2 / (1 + halving);
@@ -62,7 +62,7 @@ TEST(LevelSet, IsFlatWhereAPlaneCutsABall) {
   EXPECT_GT(flat, 150);
 }
 
-TEST(LevelSet, IsClosedWhereTheBoxCutsItAndWhenTheFunctionIsZeroOnTheGrid) {
+TEST(LevelSet, IsClosedAtTheBoxAndWithZerosOnTheGrid) {
   EXPECT_TRUE(is_closed(mesh_level_set(box_of(1), 0.25, [](const Vec3&) { return -1.0; })));
   EXPECT_TRUE(is_closed(mesh_level_set(box_of(1), 0.25, [](const Vec3& p) { return p.cwiseAbs().maxCoeff() - 0.5; })));
   // A chessboard of cubes: up to four of them meet at each edge of the grid.
@@ -73,7 +73,7 @@ TEST(LevelSet, IsClosedWhereTheBoxCutsItAndWhenTheFunctionIsZeroOnTheGrid) {
   EXPECT_TRUE(mesh_level_set(box_of(1), 0.25, [](const Vec3&) { return 1.0; }).triangles.empty());
 }
 
-TEST(LevelSet, DistancesAreThoseOfGeometry) {
+TEST(LevelSet, DistancesMatchGeometry) {
   const Vec3 a(0, 0, 0), b(2, 0, 0);
   EXPECT_DOUBLE_EQ(distance_to_segment_m({1, 3, 4}, a, b), 5);
   EXPECT_DOUBLE_EQ(distance_to_segment_m({-3, 4, 0}, a, b), 5);
@@ -104,7 +104,7 @@ TEST(SolidModel, ArchHasTheVolumeOfItsBlockWithoutTheOpening) {
   }
 }
 
-TEST(SolidModel, HollowBlockLooksIntoItsCavity) {
+TEST(SolidModel, AHollowBlockFacesIntoItsCavity) {
   SolidModel model;
   const auto rock = model.material("rock", Vec3::Constant(0.3));
   model.begin_object("cave");

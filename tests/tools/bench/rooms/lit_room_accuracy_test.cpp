@@ -13,7 +13,7 @@ using namespace lit_room_fixture;
 INSTANTIATE_TEST_SUITE_P(All, LitRooms, testing::ValuesIn(kRooms), [](const auto& of) { return of.param.name; });
 
 // Receivers and lamps share one air region, also for seeds unlike those inspected by hand.
-TEST_P(LitRooms, HaveReceiversAndLampsInOneAirForAnySeed) {
+TEST_P(LitRooms, HaveConnectedReceiversAndLampsForAnySeed) {
   for (const std::uint64_t seed : {0ULL, ~0ULL, 1ULL << 63, 0x5555555555555555ULL}) {
     const LitRoom room = GetParam().make(seed);
     EXPECT_EQ(room.receivers.size(), GetParam().receivers);

@@ -14,7 +14,7 @@ using namespace lit_room_fixture;
 
 INSTANTIATE_TEST_SUITE_P(All, LitRooms, testing::ValuesIn(kRooms), [](const auto& of) { return of.param.name; });
 
-TEST_P(LitRooms, HaveTheSizeTheyPromise) {
+TEST_P(LitRooms, HaveTheirStatedSize) {
   for (const std::uint64_t seed : {1, 2, 3}) {
     const LitRoom room = GetParam().make(seed);
     EXPECT_EQ(room.name, GetParam().name);
@@ -65,7 +65,7 @@ TEST_P(LitRooms, AreBuiltOfClosedSolids) {
   for (const auto& [edge, count] : walked) ASSERT_EQ(count, 0);
 }
 
-TEST_P(LitRooms, LetNoRayOutWhenTheyAreClosed) {
+TEST_P(LitRooms, LetNoRayOutWhenClosed) {
   const LitRoom room = GetParam().make(1);
   const RayScene rays(room.scene);
   std::mt19937_64 random(7);

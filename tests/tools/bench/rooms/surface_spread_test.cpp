@@ -30,7 +30,7 @@ struct SpreadRoom {
   SurfacePart floor;
 };
 
-TEST(SurfaceSpread, IsOnTheFreeFloorOnlyAMillimetreOffIt) {
+TEST(SurfaceSpread, LiesOnlyOnTheFreeFloorAMillimetreOffIt) {
   SpreadRoom room;
   const RayScene rays(room.scene);
   const SurfaceSpread spread(room.scene, rays, {3, 2, 1.5});
@@ -90,7 +90,7 @@ TEST(SurfaceSpread, IsTheSameForASeedAndDiffersForTwo) {
   EXPECT_TRUE(differ);
 }
 
-TEST(SurfaceSpread, TurnsWhatLooksTheOtherWayAndGivesNothingWhereNothingIs) {
+TEST(SurfaceSpread, UsesEitherSideOnRequestAndGivesNothingWhereNothingFits) {
   SpreadRoom room;
   for (auto& t : room.scene.triangles) std::swap(t[0], t[1]);
   const RayScene rays(room.scene);

@@ -16,7 +16,7 @@ HttpRequest with(const std::string& name, const std::string& value) {
 /// The cookie that a browser returns.
 std::string returned(const std::string& set_cookie) { return set_cookie.substr(0, set_cookie.find(';')); }
 
-TEST(Access, TheTokenIsKnownAndNothingElse) {
+TEST(Access, AcceptsOnlyItsToken) {
   const Access access, other;
   EXPECT_EQ(access.token().size(), 64u);
   EXPECT_NE(access.token(), other.token());
@@ -48,7 +48,7 @@ TEST(Access, ACodeOpensOneBrowserOnceAndWithinTenMinutes) {
   EXPECT_EQ(access.credential(with("cookie", "luxrig_session_9620=")), "");
 }
 
-TEST(Access, RemembersSoManyBrowsers) {
+TEST(Access, RemembersALimitedNumberOfBrowsers) {
   Access access;
   std::string first, last;
   for (int i = 0; i < 65; ++i) {

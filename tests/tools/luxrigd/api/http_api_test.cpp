@@ -156,7 +156,7 @@ TEST_F(HttpApiTest, ParksNamedHeadsOrAll) {
   EXPECT_EQ(parked, 4);
 }
 
-TEST_F(HttpApiTest, HoldsByHandAndReleases) {
+TEST_F(HttpApiTest, SetsByHandAndReleases) {
   for (const auto& [route, body] : {
            std::pair{"/api/level", R"({"fixtures":["a","b*"],"level":0.05})"},
            std::pair{"/api/level", R"({"fixtures":["a"],"level":1,"for_s":600})"},
@@ -192,7 +192,7 @@ TEST_F(HttpApiTest, HoldsByHandAndReleases) {
   EXPECT_EQ(held, "");
 }
 
-TEST_F(HttpApiTest, AReloadThatIsRefusedSaysWhichKeyAndAnApplyWhatItHolds) {
+TEST_F(HttpApiTest, ARefusedReloadNamesItsKeyAndAnApplyItsHeldFixtures) {
   const std::string refused = ask(port, post("/api/reload", "{}", kJson));
   EXPECT_NE(refused.find(" 400 "), std::string::npos);
   EXPECT_NE(refused.find("rig.toml:7:1: [[bus]] \\\"dmx\\\" has changed: restart"), std::string::npos) << refused;
@@ -210,7 +210,7 @@ TEST_F(HttpApiTest, StreamsEventsAndStopsWhileAClientListens) {
   listener.join();
 }
 
-TEST_F(HttpApiTest, ThePortWantsTheTokenAndTheSocketDoesNot) {
+TEST_F(HttpApiTest, ThePortRequiresTheTokenButTheSocketDoesNot) {
   const std::string right = g_token;
   for (const std::string& wrong : {std::string(), right + "0", std::string(64, '0')}) {
     g_token = wrong;
@@ -265,7 +265,7 @@ TEST_F(HttpApiTest, AOneTimeAddressOpensOneBrowser) {
   EXPECT_NE(ask(port, post("/api/session", "{}", kJson)).find("/?open="), std::string::npos);
 }
 
-TEST_F(HttpApiTest, SixteenMegabytesOfBracketsAreRefusedAndCostNothingThatStays) {
+TEST_F(HttpApiTest, SixteenMegabytesOfBracketsAreRefusedWithoutKeepingMemory) {
   const auto kilobytes = [](const std::string& key) {
     std::ifstream in("/proc/self/status");
     for (std::string word; in >> word;)

@@ -11,7 +11,7 @@ using nlohmann::json;
 
 const LightInForce kHanded{{{0.1, 1.0 / 3}, {{-0.5, 0.25, 0.1}, {1.0 / 7, 0, 0}}}, {0, 1}, 1.5, 3, {0, 1}};
 
-TEST(HandedLight, ArrivesAsItWas) {
+TEST(HandedLight, RoundTrips) {
   const auto read = handed_light_of(handed_light_text(kHanded) + "\n", 2);
   ASSERT_TRUE(read);
   EXPECT_EQ(read->look.levels, kHanded.look.levels);
@@ -22,7 +22,7 @@ TEST(HandedLight, ArrivesAsItWas) {
   EXPECT_EQ(read->fade_s, kHanded.fade_s);
 }
 
-TEST(HandedLight, WhereNobodySaysOtherwiseAllOfItIsSent) {
+TEST(HandedLight, IsSentInFullUnlessSilencesAreStated) {
   json all = json::parse(handed_light_text(kHanded));
   all.erase("silent");
   const auto read = handed_light_of(all.dump(), 2);
@@ -34,7 +34,7 @@ TEST(HandedLight, WhereNobodySaysOtherwiseAllOfItIsSent) {
   }
 }
 
-TEST(HandedLight, WhatIsNotWholeOrNotOfThisRigIsNoLight) {
+TEST(HandedLight, IsRefusedIfTruncatedInvalidOrOfAnotherRig) {
   const std::string text = handed_light_text(kHanded);
   EXPECT_FALSE(handed_light_of(text, 3));
   EXPECT_FALSE(handed_light_of(text, 1));

@@ -25,7 +25,7 @@ LightInForce light_of(std::size_t fixtures, double level) {
   return light;
 }
 
-TEST(LastLook, IsReadAsItWasPut) {
+TEST(LastLook, ReadsTheNewestLight) {
   auto memory = LastLookMemory::create(7);
   ASSERT_TRUE(memory);
   EXPECT_FALSE(memory->take());
@@ -47,7 +47,7 @@ TEST(LastLook, IsReadAsItWasPut) {
   EXPECT_TRUE(memory->ended());
 }
 
-TEST(LastLook, CountsWhoLivesAndWhoHasTheLight) {
+TEST(LastLook, TracksHeartbeatsAndTheHolderOfTheLight) {
   auto memory = LastLookMemory::create(2);
   ASSERT_TRUE(memory);
   auto other = LastLookMemory::open(::dup(memory->fd()), 2);
@@ -76,7 +76,7 @@ TEST(LastLook, OfAnotherRigIsRefused) {
   ::close(null);
 }
 
-TEST(LastLook, OfAWriterGoneWrongIsStillWithinBounds) {
+TEST(LastLook, OfAFaultyWriterStaysWithinBounds) {
   auto memory = LastLookMemory::create(2);
   ASSERT_TRUE(memory);
   LightInForce light = light_of(2, 0.5);
@@ -95,7 +95,7 @@ TEST(LastLook, OfAWriterGoneWrongIsStillWithinBounds) {
   EXPECT_EQ(read->look.joints[0].pan_rad, 0);
 }
 
-TEST(LastLook, IsWholeHoweverItsWriterDies) {
+TEST(LastLook, IsWholeWheneverItsWriterDies) {
   auto memory = LastLookMemory::create(500);
   ASSERT_TRUE(memory);
   for (int round = 0; round < 20; ++round) {
@@ -125,7 +125,7 @@ TEST(LastLook, IsWholeHoweverItsWriterDies) {
   EXPECT_TRUE(memory->take());
 }
 
-TEST(GuardianWords, SayWhereABusIs) {
+TEST(GuardianWords, RoundTripABusAddress) {
   for (const Redirect& to : {Redirect{"127.0.0.1", 5568, {}}, Redirect{"", 0, "/dev/pts/4"}}) {
     const auto read = redirect_of(redirect_text("a=b:c", to));
     ASSERT_TRUE(read);

@@ -26,7 +26,7 @@ OutputProgram fade(std::vector<double> from, std::vector<double> to, Duration ho
   return program;
 }
 
-TEST(SmoothReturn, WithoutAStallNothingIsChanged) {
+TEST(SmoothReturn, ChangesNothingWithoutAStall) {
   const OutputProgram program = fade({0, 1}, {1, 0.2}, 500ms);
   SmoothReturn smooth(2, kCycle);
   std::vector<double> level(2), wanted(2);
@@ -39,7 +39,7 @@ TEST(SmoothReturn, WithoutAStallNothingIsChanged) {
 }
 
 // It used to jump by 123 of 255 in one frame.
-TEST(SmoothReturn, AfterAStallInAFadeNoFrameIsFarFromTheOneBefore) {
+TEST(SmoothReturn, NeverJumpsAfterAStallInAFade) {
   std::mt19937 random(5);
   for (int trial = 0; trial < 200; ++trial) {
     const auto draw = [&] { return std::uniform_real_distribution<double>(0, 1)(random); };
@@ -81,7 +81,7 @@ TEST(SmoothReturn, AfterAStallInAFadeNoFrameIsFarFromTheOneBefore) {
   }
 }
 
-TEST(SmoothReturn, DarkIsDarkAtOnce) {
+TEST(SmoothReturn, GoesDarkAtOnce) {
   const OutputProgram program = fade({1}, {1}, 0s);
   SmoothReturn smooth(1, kCycle);
   std::vector<double> level{1};
@@ -91,7 +91,7 @@ TEST(SmoothReturn, DarkIsDarkAtOnce) {
   EXPECT_EQ(level[0], 0);
 }
 
-TEST(SmoothReturn, WhatSomebodyElseHasSentMeanwhileIsNotGoneOnFrom) {
+TEST(SmoothReturn, DoesNotContinueFromForgottenLevels) {
   const OutputProgram program = fade({1}, {1}, 0s);
   SmoothReturn smooth(1, kCycle);
   std::vector<double> level{0.1};
@@ -102,7 +102,7 @@ TEST(SmoothReturn, WhatSomebodyElseHasSentMeanwhileIsNotGoneOnFrom) {
   EXPECT_EQ(level[0], 0.9);
 }
 
-TEST(BlackoutSwitch, IsDarkAtOnceAndLitOnlyByTheNewestOrder) {
+TEST(BlackoutSwitch, IsDarkAtOnceAndLitOnlyByTheNewestCommand) {
   BlackoutSwitch blackout;
   EXPECT_FALSE(blackout.dark());
   const auto on = blackout.order(true);

@@ -17,7 +17,7 @@ Result<void> save(Journal& journal, JournalState wanted) {
   return journal.save_first([&](JournalState& state) { state = std::move(wanted); });
 }
 
-TEST(Journal, KeepsWhatWasSavedLast) {
+TEST(Journal, KeepsTheLatestSave) {
   const Folder folder;
   Journal journal(folder / "new/state");
   EXPECT_FALSE(journal.load().state) << "none was saved yet";
@@ -38,7 +38,7 @@ TEST(Journal, WithoutAFolderKeepsItsStateInMemory) {
   EXPECT_FALSE(journal.load().state);
 }
 
-TEST(Journal, KeepsWhatIsSetByHandAndLeavesOutWhatIsDamaged) {
+TEST(Journal, KeepsSettingsByHandAndOmitsDamagedEntries) {
   const Folder folder;
   Journal journal(folder / "");
   JournalState state{"p", false, {}};
@@ -64,7 +64,7 @@ TEST(Journal, KeepsWhatIsSetByHandAndLeavesOutWhatIsDamaged) {
   EXPECT_EQ(damaged->by_hand[0].value, 1);
 }
 
-TEST(Journal, ReadsWhatAnOlderVersionWrote) {
+TEST(Journal, ReadsFilesOfOlderVersions) {
   const Folder folder;
   std::ofstream(folder / "state.json") << R"({"luxrig_state":1,"plan":"p","blackout":true})";
   const auto left = Journal(folder / "").load();
@@ -74,7 +74,7 @@ TEST(Journal, ReadsWhatAnOlderVersionWrote) {
 }
 
 // "luxrig_state":"1" used to end every start of the daemon; a truncated file lost a blackout.
-TEST(Journal, OfADamagedFileWhatIsLegibleHoldsAboveAllTheBlackout) {
+TEST(Journal, KeepsTheLegiblePartsOfADamagedFileAndItsBlackout) {
   struct Case {
     const char* text;
     bool blackout;
@@ -101,7 +101,7 @@ TEST(Journal, OfADamagedFileWhatIsLegibleHoldsAboveAllTheBlackout) {
   }
 }
 
-TEST(Journal, HalfWrittenStateNeverReplacesTheOldOne) {
+TEST(Journal, AHalfWrittenStateNeverReplacesTheOldOne) {
   const Folder folder;
   Journal journal(folder / "");
   ASSERT_TRUE(save(journal, {"old", false, {}}));
@@ -114,7 +114,7 @@ TEST(Journal, HalfWrittenStateNeverReplacesTheOldOne) {
 }
 
 // A plan that was refused because of a full disk used to be on disk after the next save.
-TEST(Journal, WhatIsRefusedIsNeverSavedAndWhatIsDoneGoesWithTheNextSave) {
+TEST(Journal, NeverSavesARefusedChangeAndSavesADoneOneNextTime) {
   const Folder folder;
   std::ofstream(folder / "state") << "a file stands in the way";
   Journal journal(folder / "state");
@@ -134,7 +134,7 @@ TEST(Journal, WhatIsRefusedIsNeverSavedAndWhatIsDoneGoesWithTheNextSave) {
 }
 
 // Saves of several threads used to share one temporary file: 149 of 240 failed, and disk and memory differed.
-TEST(Journal, SavesOfSeveralThreadsComeOneAfterTheOther) {
+TEST(Journal, SerialisesSavesOfSeveralThreads) {
   const Folder folder;
   Journal journal(folder / "");
   std::atomic<bool> reading{true};

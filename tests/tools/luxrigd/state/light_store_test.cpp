@@ -33,7 +33,7 @@ KeptLight light_of(const Rig& rig, bool daylit) {
   return light;
 }
 
-TEST(LightStore, GivesBackWhatWasKept) {
+TEST(LightStore, RoundTrips) {
   for (const bool daylit : {false, true}) {
     for (const std::size_t meters : {0u, 2u}) {
       const Rig rig = rig_of(3, 5, meters);
@@ -49,7 +49,7 @@ TEST(LightStore, GivesBackWhatWasKept) {
   }
 }
 
-TEST(LightStore, TakesNothingOfAnotherRigOrAnotherKey) {
+TEST(LightStore, RefusesFilesOfAnotherRigOrKey) {
   const Rig rig = rig_of(3, 5, 2);
   const std::string bytes = light_bytes(light_of(rig, true), 42);
   EXPECT_FALSE(light_of_bytes(bytes, 43, rig));
@@ -58,7 +58,7 @@ TEST(LightStore, TakesNothingOfAnotherRigOrAnotherKey) {
   EXPECT_FALSE(light_of_bytes(bytes, 42, rig_of(3, 5, 1)));
 }
 
-TEST(LightStore, TakesNothingThatIsDamaged) {
+TEST(LightStore, RefusesDamagedFiles) {
   const Rig rig = rig_of(3, 5, 2);
   const std::string bytes = light_bytes(light_of(rig, true), 42);
   std::mt19937 random(7);

@@ -13,7 +13,7 @@ using testing::files_in;
 using testing::Folder;
 using testing::state_with;
 
-TEST(SaveAtomicityOfThreads, ManyWritersNeverShowAReaderHalfAState) {
+TEST(SaveAtomicityOfThreads, ManyWritersNeverExposeAHalfWrittenState) {
   constexpr int kThreads = 8, kSaves = 200;
   const Folder folder;
   Journal journal(folder / "");

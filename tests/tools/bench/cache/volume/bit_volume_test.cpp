@@ -22,7 +22,7 @@ BitVolume random_volume(const Eigen::Vector3i& size, double share, unsigned seed
 
 const Eigen::Vector3i kVolumeSizes[] = {{130, 7, 5}, {64, 9, 3}, {1, 1, 1}, {63, 2, 11}, {65, 6, 6}};
 
-TEST(BitVolume, VisitsAndCountsExactlyWhatWasSet) {
+TEST(BitVolume, VisitsAndCountsExactlyTheSetVoxels) {
   for (const auto& size : kVolumeSizes) {
     const BitVolume volume = random_volume(size, 0.2, 1);
     BitVolume copy(size);
@@ -36,7 +36,7 @@ TEST(BitVolume, VisitsAndCountsExactlyWhatWasSet) {
   }
 }
 
-TEST(BitVolume, DilationSetsTheNeighboursAndNothingElse) {
+TEST(BitVolume, DilationSetsOnlyNeighbours) {
   for (const auto& size : kVolumeSizes) {
     const BitVolume volume = random_volume(size, 0.03, 2), dilated = volume.dilated();
     std::size_t n = 0;
@@ -64,7 +64,7 @@ TEST(BitVolume, ReductionIsTheOrOfEachBlock) {
   }
 }
 
-TEST(DistanceField, IsTheChessboardDistanceByBruteForce) {
+TEST(DistanceField, MatchesTheChessboardDistanceByBruteForce) {
   for (const auto& size : {Eigen::Vector3i(20, 17, 9), Eigen::Vector3i(70, 3, 4), Eigen::Vector3i(1, 1, 1)}) {
     for (const double share : {0.002, 0.05}) {
       BitVolume volume = random_volume(size, share, 4);
@@ -83,7 +83,7 @@ TEST(DistanceField, IsTheChessboardDistanceByBruteForce) {
   }
 }
 
-TEST(DistanceField, IsAsFarAsItCountsWhereNothingIsSetAndBeyondThat) {
+TEST(DistanceField, SaturatesAtItsMaximumDistance) {
   EXPECT_EQ(DistanceField(BitVolume({5, 4, 3})).at({2, 2, 2}), DistanceField::kFarthest);
   BitVolume corridor({600, 1, 1});
   corridor.set(0, 0, 0);

@@ -38,7 +38,7 @@ struct Segments {
   }
 };
 
-TEST(VoxelWalk, VisitsEveryVoxelThatTheSegmentPassesInOrderAndNoOther) {
+TEST(VoxelWalk, VisitsExactlyTheVoxelsOfTheSegmentInOrder) {
   Segments segments;
   for (int i = 0; i < 3000; ++i) {
     const auto [from, to] = segments.next(i);
@@ -81,7 +81,7 @@ TEST(VoxelWalk, VisitsEveryVoxelThatTheSegmentPassesInOrderAndNoOther) {
   }
 }
 
-TEST(VoxelWalk, StridesByDistanceFindTheSameVoxelsAsVisitingEachOne) {
+TEST(VoxelWalk, StridesByDistanceFindTheSameVoxelsAsSingleSteps) {
   Segments segments;
   segments.size = {40, 33, 29};
   int hits = 0;

@@ -32,7 +32,7 @@ void for_each_surface_point(const Scene& scene, int steps, Check&& check) {
   }
 }
 
-TEST(Voxelise, EverySurfacePointLiesInASetVoxelWhateverTheTriangle) {
+TEST(Voxelise, EverySurfacePointLiesInASetVoxel) {
   std::mt19937 random(5);
   std::uniform_real_distribution<float> unit(-1, 1);
   for (const double scale : {1e-3, 1.0, 1e4}) {
@@ -64,7 +64,7 @@ TEST(Voxelise, EverySurfacePointLiesInASetVoxelWhateverTheTriangle) {
   }
 }
 
-TEST(Voxelise, SetsLittleMoreThanTheVoxelsThatTheTriangleTouches) {
+TEST(Voxelise, SetsLittleMoreThanTheTouchedVoxels) {
   std::mt19937 random(6);
   std::uniform_real_distribution<float> unit(-1, 1);
   std::size_t set = 0, near = 0;
@@ -83,7 +83,7 @@ TEST(Voxelise, SetsLittleMoreThanTheVoxelsThatTheTriangleTouches) {
   EXPECT_LT(set - near, set / 1000);  // except at tips of narrow triangles
 }
 
-TEST(Voxelise, AWallHasNoHoleThatARayCanPass) {
+TEST(Voxelise, AWallHasNoHoles) {
   // A tilted wall of many triangles through the whole box; the rays cross it far from its rim.
   std::vector<std::array<Vec3f, 3>> triangles;
   const auto at = [](int i, int j) {
@@ -116,7 +116,7 @@ TEST(Voxelise, AnEmptySceneHasNoVoxels) {
   EXPECT_EQ(voxelise(scene, grid).reduced(4).dilated().count(), 0u);
 }
 
-TEST(VoxelGrid, HoldsItsBoxWithAMarginOfAVoxelAndKeepsToItsSize) {
+TEST(VoxelGrid, ContainsItsBoxWithAMarginOfAVoxelWithinItsSize) {
   std::mt19937 random(8);
   std::uniform_real_distribution<double> unit(0, 1);
   for (int i = 0; i < 1000; ++i) {
