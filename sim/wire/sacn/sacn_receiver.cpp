@@ -81,9 +81,7 @@ std::optional<SacnSync> decode_sacn_sync(Bytes packet) {
 
 SacnReceiver::Verdict SacnReceiver::receive(Time now, Bytes packet) {
   if (const auto sync = decode_sacn_sync(packet)) {
-    if (sync->sync_universe == 0 || (last_sync_.size() >= kMaxUniverses && !last_sync_.contains(sync->sync_universe))) {
-      return Verdict::ignored;
-    }
+    if (last_sync_.size() >= kMaxUniverses && !last_sync_.contains(sync->sync_universe)) return Verdict::ignored;
     last_sync_[sync->sync_universe] = now;
     for (auto& [number, universe] : universes_) {
       for (auto& [cid, source] : universe.sources) {

@@ -318,7 +318,7 @@ TEST(SacnFarEnd, ASynchronisationForAnotherUniverseReleasesNothing) {
   receiver.receive(at_s(0.2), other);
   EXPECT_EQ(first_slot(receiver, at_s(0.2)), -1);
   other[45] = 0, other[46] = 0;
-  EXPECT_EQ(receiver.receive(at_s(0.2), other), Verdict::ignored);  // E1.31 6.3.3: universe 0 synchronises nothing
+  EXPECT_EQ(receiver.receive(at_s(0.2), other), Verdict::not_sacn);  // E1.31 6.3.3: universe 0 synchronises nothing
 }
 
 TEST(SacnFarEnd, ForceSyncDecidesToContinueOrFreezeWhenSynchronisationStops) {
