@@ -17,7 +17,7 @@ class BypassList {
 
   explicit BypassList(const Rig& rig) : lamps_(rig.fixtures.size()), meters_(rig.luxmeters.size()) {}
 
-  /// Return those that were not so before.
+  /// Return those that changed.
   std::vector<std::size_t> set_lamps(Time now, std::span<const std::size_t> fixtures, bool on) {
     return set(lamps_, now, fixtures, on);
   }

@@ -27,8 +27,8 @@ class HandSettings {
   };
   [[nodiscard]] Over over(Time now) const;
 
-  /// A plan ends the settings by hand of the plan before. Settings made in the running show stay: then the plan's
-  /// levels are to be solved around them, and this returns true.
+  /// A new plan ends settings that the last plan brought. Settings made in the running show stay. Returns whether any
+  /// stay: the levels must then be solved around them.
   /// levels      of the plan
   /// max_level   per fixture
   bool take_plan(Time now, const std::vector<double>& levels, const Look& look, std::span<const double> max_level);

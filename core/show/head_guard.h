@@ -37,7 +37,7 @@ class HeadGuard {
     std::optional<Joints> swept_to{};
     std::optional<std::size_t> zone{};  ///< that its beam could meet now
   };
-  /// What a head is asked for.
+  /// The orders of a head at one step.
   struct Order {
     Joints wanted, at_last;  ///< aim now, and at the end of the running fade
     bool lit = false, obeys = false;

@@ -27,7 +27,7 @@ class LostFixtures {
 
   /// Levels of fixtures when the show learns of a loss.
   struct Levels {
-    std::vector<double> present, before;  ///< before: at the earliest instant of which the show does not know better
+    std::vector<double> present, before;  ///< before: as long ago as a loss can go unnoticed
   };
   /// Looks for losses. Returns whether anything changed.
   /// apart    per fixture, 1: its loss is tracked by itself; the others go to their safe look with the whole rig

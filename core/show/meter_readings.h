@@ -36,7 +36,7 @@ class MeterReadings {
   void believe(const LuxReading& sample) { measured_[sample.luxmeter] = sample; }
   void disbelieve(std::size_t luxmeter) { measured_[luxmeter].reset(); }
   void disbelieve_all() { measured_.assign(measured_.size(), std::nullopt); }
-  /// Nothing that it read counts any longer.
+  /// Drops all its readings.
   void forget(std::size_t luxmeter);
 
   [[nodiscard]] const PerLuxmeter& heard() const { return heard_; }        ///< the last one, believed or not

@@ -28,7 +28,7 @@ constexpr Suite kSuites[] = {
     {"faults", "faults of every bus by the hundred: what the light did, when it was said and over", bench_faults},
 };
 
-/// Prints the rows again.
+/// The command that prints these rows again.
 std::string command_of(const Suite& suite, const BenchOptions& options) {
   const BenchOptions usual;
   std::string text = fmt::format("luxrig bench {}", suite.name);
