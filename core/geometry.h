@@ -21,6 +21,10 @@ struct Pose {
   [[nodiscard]] Vec3 inverse_direction(const Vec3& direction_to) const { return rotation.transpose() * direction_to; }
 };
 
+/// The shortest rotation that turns `from` to `to`, both unit vectors. For opposite vectors: a half turn about an axis
+/// at right angles to both, always the same. Orthonormal and exact to rounding, however near to opposite they are.
+[[nodiscard]] Mat3 shortest_rotation(const Vec3& from, const Vec3& to);
+
 inline constexpr double kPi = std::numbers::pi;
 [[nodiscard]] constexpr double rad_from_deg(double deg) { return deg * (kPi / 180.0); }
 [[nodiscard]] constexpr double deg_from_rad(double rad) { return rad * (180.0 / kPi); }

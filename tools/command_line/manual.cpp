@@ -104,6 +104,7 @@ std::vector<ManPage> man_pages(const CLI::App& app) {
     group = command->get_group();
     const std::string name = program + "-" + command->get_name();
     page += fmt::format(".TP\n.BR {} (1)\n{}\n", roff(name), roff(command->get_description()));
+    if (command->get_help_ptr() == nullptr) continue;
     pages.push_back({name, page_of_one(*command, name, program + " " + command->get_name()) + ending(*command) +
                                fmt::format(".SH SEE ALSO\n.BR {} (1)\n", roff(program))});
   }

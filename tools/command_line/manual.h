@@ -11,7 +11,7 @@ struct ManPage {
   std::string name;  ///< "luxrig-check"; the file is name + ".1"
   std::string text;  ///< section 1, in man(7)
 };
-/// The program's page, then one for each of its commands.
+/// The program's page, then one for each of its commands. A command without an option for help is another program.
 [[nodiscard]] std::vector<ManPage> man_pages(const CLI::App& app);
 
 }  // namespace luxrig

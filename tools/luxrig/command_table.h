@@ -18,6 +18,8 @@ struct Command {
   const char* group;                     ///< one of those below
   const char* summary;                   ///< its line in `luxrig --help`, up to 66 letters
   Action (*declare)(CLI::App& command);  ///< adds its options; the action keeps what they set
+  /// Program beside this one that does it all: it gets the words after the name, and nothing is declared.
+  const char* program = nullptr;
 };
 
 /// Purpose of a command: help, man page and README sort the commands by it.

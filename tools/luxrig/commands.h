@@ -17,7 +17,4 @@ extern const Command kPageCommand, kApplyCommand, kReloadCommand, kIdentifyComma
 /// In by_hand_commands.cpp.
 extern const Command kLevelCommand, kGoalCommand, kReleaseCommand;
 
-/// In tools/bench.
-extern const Command kBenchCommand;
-
 }  // namespace luxrig

@@ -141,8 +141,7 @@ class BeamsAtPoints {
 }  // namespace
 
 MountedBeam aimed_beam(const Vec3& position_world_m, const Vec3& direction_world, Intensity intensity, double level) {
-  return {position_world_m, Eigen::Quaterniond::FromTwoVectors(-Vec3::UnitZ(), direction_world).toRotationMatrix(),
-          std::move(intensity), level};
+  return {position_world_m, shortest_rotation(-Vec3::UnitZ(), direction_world), std::move(intensity), level};
 }
 
 ReliefContrast relief_contrast(const TargetSurface& surface, const TargetRays& target,

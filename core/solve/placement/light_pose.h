@@ -33,7 +33,7 @@ struct LightPose {
 
 /// `hung` turned by the shortest rotation that points its -Z along `aim`.
 [[nodiscard]] inline Mat3 aimed_rotation(const Mat3& hung, const Vec3& aim) {
-  return Eigen::Quaterniond::FromTwoVectors(-hung.col(2), aim).toRotationMatrix() * hung;
+  return shortest_rotation(-hung.col(2), aim) * hung;
 }
 
 /// The pose moved by step: metres along x, y and z; with five numbers, also radians by which the aim turns towards the

@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "core/transport/bsdf.h"
 #include "core/transport/sobol.h"
 #include "tools/bench/cache/volume/voxelise.h"
 

@@ -66,7 +66,7 @@ inline std::vector<Vec3> lattice_m(double step_m) {
 inline Emitter isotropic_luminaire(double flux_lm = 1000) { return {make_isotropic(flux_lm), {}}; }
 
 inline Emitter spot_luminaire(const Vec3& aim, const Vec3& offset_m = Vec3::Zero()) {
-  const Mat3 turned = Eigen::Quaterniond::FromTwoVectors(-Vec3::UnitZ(), aim).toRotationMatrix();
+  const Mat3 turned = shortest_rotation(-Vec3::UnitZ(), aim);
   return {make_spot(800, rad_from_deg(20), rad_from_deg(40)), {turned, offset_m}};
 }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/parallel.h"
 #include "core/transport/candidates/candidate_transport.h"
 #include "core/transport/candidates/incremental_transport.h"
 #include "tests/core/transport/candidates/box_rooms.h"
@@ -41,6 +42,33 @@ TEST(IndirectCandidates, AreTheSameBytesOnAnyThreadsAndInAnyMemory) {
   ASSERT_TRUE(done) << done.error().detail;
   EXPECT_EQ(streamed, one.matrix.total_lux);
   EXPECT_GE(blocks, 1u);
+}
+
+TEST(IncrementalTransport, GivesTheSameBytesOnAnyThreadsAlsoToManyCallersAtOnce) {
+  const Scene scene = two_rooms(0.7, true);
+  const RayScene rays(scene);
+  std::vector<Emitter> emitters(6, isotropic_luminaire());
+  for (std::size_t e = 0; e < emitters.size(); ++e)
+    emitters[e].world_from_lamp.translation_m = {1 + 1.1 * static_cast<double>(e), 1.2, 2.2};
+  std::vector<std::vector<Eigen::VectorXd>> total_lux;
+  std::vector<Eigen::MatrixXd> direct_lux;
+  for (const int threads : {1, 3}) {
+    IncrementalOptions options;
+    options.cells = 400;
+    options.rays_per_column = 512;
+    options.threads = threads;
+    const auto transport = std::move(*IncrementalTransport::make(scene, rays, receivers_in_two_rooms(9), options));
+    ASSERT_TRUE(transport->move_receiver(4, {{6.5, 1.1, 0.8}, Vec3::UnitZ()}));
+    std::vector<Eigen::VectorXd>& columns = total_lux.emplace_back(emitters.size());
+    parallel_for(emitters.size(), threads,
+                 [&](std::size_t e) { columns[e] = transport->column(emitters[e])->total_lux; });
+    Eigen::MatrixXd& lux = direct_lux.emplace_back(Eigen::MatrixXd::Zero(18, 6));
+    EXPECT_GT(*transport->update_direct(emitters, rays, rays.bounds_world_m(), lux), 10u);
+  }
+  EXPECT_GT(total_lux[0][0].sum(), 0);
+  EXPECT_EQ(total_lux[1], total_lux[0]);
+  EXPECT_GT(direct_lux[0].sum(), 0);
+  EXPECT_EQ(direct_lux[1], direct_lux[0]);
 }
 
 }  // namespace

@@ -1,23 +1,21 @@
-// bench: the suites' options on the command line.
+// luxrig-bench: run time against error, on a named suite. `luxrig bench` runs it.
 #include <CLI/CLI.hpp>
-#include <memory>
+#include <string>
 
 #include "tools/bench/bench.h"
 #include "tools/command_line/choice.h"
 #include "tools/command_line/completion.h"
-#include "tools/luxrig/commands.h"
+#include "tools/command_line/parse_command_line.h"
+#include "tools/command_line/version.h"
 
-namespace luxrig {
-namespace {
-
-Action declare_bench(CLI::App& command) {
-  struct Line {
-    std::string suite;
-    BenchOptions options;
-  };
-  const auto line = std::make_shared<Line>();
-  BenchOptions& bench = line->options;
-  command.add_option("SUITE", line->suite, "which")->required()->check(one_of(bench_suites()));
+int main(int argc, char** argv) {
+  using namespace luxrig;
+  CLI::App command("run time against error, on a named suite", "luxrig-bench");
+  begin_command_line(command);
+  command.set_version_flag("--version", std::string("luxrig-bench ") + kVersion, "print version and commit");
+  std::string suite;
+  BenchOptions bench;
+  command.add_option("SUITE", suite, "which")->required()->check(one_of(bench_suites()));
   command.add_flag("--quick", bench.quick, "under a minute, same columns");
   command.add_option("--csv", bench.csv_file, "write the rows here")->check(offers_files());
   command.add_option("--plot", bench.plot_file, "draw error over time here (PNG)")->check(offers_files());
@@ -51,12 +49,6 @@ Action declare_bench(CLI::App& command) {
                   "venus-bust.glb, skull.obj, teapot.glb, egyptian-cat.glb, chess-board.glb")
       ->check(offers_folders());
   command.add_option("--only", bench.only, "only cases (analytic: families) whose name begins so");
-  return [line] { return run_bench(line->suite, line->options); };
+  if (const auto end = parse_command_line(command, argc, argv)) return *end;
+  return run_bench(suite, bench);
 }
-
-}  // namespace
-
-const Command kBenchCommand{"bench", command_group::kMeasure, "run time against error, on a named suite",
-                            declare_bench};
-
-}  // namespace luxrig
