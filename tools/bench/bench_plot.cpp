@@ -33,7 +33,7 @@ void text_at(cairo_t* pen, double x, double y, const std::string& text) {
   cairo_show_text(pen, text.c_str());
 }
 
-void line(cairo_t* pen, double x0, double y0, double x1, double y1) {
+void draw_line(cairo_t* pen, double x0, double y0, double x1, double y1) {
   cairo_move_to(pen, x0, y0);
   cairo_line_to(pen, x1, y1);
   cairo_stroke(pen);
@@ -75,14 +75,14 @@ std::string write_plot(const std::vector<BenchRow>& rows, const std::string& tit
   for (int d = x.low_decade; d <= x.high_decade; ++d) {
     const double at = x.at(std::pow(10, d));
     cairo_set_source_rgb(pen, 0.87, 0.87, 0.87);
-    line(pen, at, kTop_px, at, kHeight_px - kBottom_px);
+    draw_line(pen, at, kTop_px, at, kHeight_px - kBottom_px);
     cairo_set_source_rgb(pen, 0.2, 0.2, 0.2);
     text_at(pen, at - 16, kHeight_px - kBottom_px + 20, fmt::format("{:g} s", std::pow(10, d)));
   }
   for (int d = y.low_decade; d <= y.high_decade; ++d) {
     const double at = y.at(std::pow(10, d));
     cairo_set_source_rgb(pen, 0.87, 0.87, 0.87);
-    line(pen, kLeft_px, at, kWidth_px - kRight_px, at);
+    draw_line(pen, kLeft_px, at, kWidth_px - kRight_px, at);
     cairo_set_source_rgb(pen, 0.2, 0.2, 0.2);
     text_at(pen, 24, at + 4, fmt::format("1e{}", d));
   }
@@ -103,8 +103,8 @@ std::string write_plot(const std::vector<BenchRow>& rows, const std::string& tit
       // Side by side, where many lines have a point at the same time.
       const double at_px = x.at(seconds_of(*row)) + (row->quartiles ? 2.5 * static_cast<double>(index % 6) - 6 : 0);
       if (row->quartiles)
-        line(pen, at_px, y.at(std::max(row->quartiles->first, kMin)), at_px,
-             y.at(std::max(row->quartiles->second, kMin)));
+        draw_line(pen, at_px, y.at(std::max(row->quartiles->first, kMin)), at_px,
+                  y.at(std::max(row->quartiles->second, kMin)));
       cairo_arc(pen, x.at(seconds_of(*row)), y.at(error_of(*row)), 4, 0, 6.2832);
       cairo_fill(pen);
     }

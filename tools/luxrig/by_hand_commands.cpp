@@ -16,7 +16,7 @@ namespace {
 using nlohmann::json;
 
 /// The value behind the names; nothing if there is none.
-std::optional<double> value_of(const std::string& text, bool percent) {
+std::optional<double> parsed_value(const std::string& text, bool percent) {
   double value = 0;
   const char* end = text.data() + text.size();
   const auto [rest, error] = std::from_chars(text.data(), end, value);
@@ -46,7 +46,7 @@ struct HeldArguments {
 
 int hold(const HeldArguments& arguments, bool level) {
   std::vector<std::string> words = arguments.words;
-  const std::optional<double> value = words.size() < 2 ? std::nullopt : value_of(words.back(), level);
+  const std::optional<double> value = words.size() < 2 ? std::nullopt : parsed_value(words.back(), level);
   if (!value) {
     fmt::print(stderr, "luxrig: {}\n",
                level ? "give names and then a level: luxrig level spot-1 0.05"

@@ -14,6 +14,7 @@
 #include "tools/luxrig/compute_arguments.h"
 #include "tools/luxrig/open_session.h"
 #include "tools/luxrig/transport_json.h"
+#include "tools/luxrig/vector_json.h"
 #include "tools/process/files.h"
 #include "tools/terminal/command.h"
 #include "tools/terminal/table.h"
@@ -29,10 +30,8 @@ struct EvaluateArguments {
   bool json = false;
 };
 
-nlohmann::json array_of(const Vec3& v) { return nlohmann::json::array({v.x(), v.y(), v.z()}); }
-
 /// The look of a plan, after its placed lights are hung; or as the rig hangs, with all levels 1.
-Checked<HungPlan> wanted_look(const EvaluateArguments& arguments, const Rig& rig) {
+Checked<HungPlan> look_to_evaluate(const EvaluateArguments& arguments, const Rig& rig) {
   if (!arguments.levels_plan) {
     HungPlan all_on{rig, hung_look(rig)};
     all_on.look.levels.assign(rig.fixtures.size(), 1.0);
@@ -49,7 +48,7 @@ int run_evaluate(const EvaluateArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
   const auto session = open_session(arguments.rig);
   if (!session) return report(session.error());
-  const auto wanted = wanted_look(arguments, session->rig);
+  const auto wanted = look_to_evaluate(arguments, session->rig);
   if (!wanted) return report(wanted.error());
   const Rig& rig = wanted->rig;
   const Look& look = wanted->look;

@@ -57,7 +57,7 @@ std::string on_screen(const std::string& picture, int lines) {
 }
 
 /// Nothing if no daemon answers.
-std::optional<std::string> picture_of(const HttpPeer& daemon) {
+std::optional<std::string> fetched_picture(const HttpPeer& daemon) {
   const auto status = http_get(daemon, "/api/status");
   const auto universes = http_get(daemon, "/api/universes");
   if (!status || !universes || status->status != 200) return std::nullopt;
@@ -69,7 +69,7 @@ std::optional<std::string> picture_of(const HttpPeer& daemon) {
 int run_monitor(const ClientArguments& arguments, bool once) {
   const auto daemon = daemon_on(arguments.port, arguments.token);
   if (!daemon) return report(daemon.error());
-  auto picture = picture_of(*daemon);
+  auto picture = fetched_picture(*daemon);
   if (!picture) return report(no_daemon(arguments.port));
   if (once || isatty(STDOUT_FILENO) == 0) {
     fmt::print("{}", *picture);
@@ -82,7 +82,7 @@ int run_monitor(const ClientArguments& arguments, bool once) {
       fmt::print("{}", on_screen(*picture, terminal_size().lines));
       std::fflush(stdout);
       std::this_thread::sleep_for(kPicturePeriod);
-      picture = picture_of(*daemon);
+      picture = fetched_picture(*daemon);
     }
   }
   return g_interrupted != 0 ? kExitOk : report(no_daemon(arguments.port));

@@ -40,7 +40,7 @@ int refuse_input(const std::string& text) {
 }
 
 /// The whole text as a number from `least` to `most`.
-std::optional<int> number_in(const std::string& text, int least, int most) {
+std::optional<int> number_between(const std::string& text, int least, int most) {
   int value = 0;
   const char* end = text.data() + text.size();
   const auto parsed = std::from_chars(text.data(), end, value);
@@ -55,7 +55,7 @@ std::optional<SocketAddress> address_of(const std::string& text) {
   if (!ipv4 || *ipv4 == 0 || is_multicast(*ipv4)) return std::nullopt;
   SocketAddress address{*ipv4, artnet::kPort};
   if (colon == std::string::npos) return address;
-  const auto port = number_in(text.substr(colon + 1), 1, 65535);
+  const auto port = number_between(text.substr(colon + 1), 1, 65535);
   if (!port) return std::nullopt;
   address.port = static_cast<std::uint16_t>(*port);
   return address;
@@ -100,7 +100,7 @@ std::optional<Result<RdmBus>> find_bus(const RdmArguments& arguments) {
   return RdmBus::find({*address, !arguments.node.empty(), arguments.universe, arguments.seconds, arguments.rediscover});
 }
 
-Json json_of(const PatchedDevice& device, const std::string& node) {
+Json rdm_device_json(const PatchedDevice& device, const std::string& node) {
   const rdm::DeviceProfile& profile = device.profile;
   Json out = {{"uid", text_of(profile.uid)},
               {"node", node},
@@ -167,11 +167,11 @@ const RdmUniverse* line_with(const RdmBus& bus, const rdm::Uid& uid) {
 /// The data that a GET needs besides the parameter: the number of a sensor or a personality.
 std::optional<std::vector<std::uint8_t>> index_of(rdm::Pid pid, const std::string& index) {
   if (pid == rdm::Pid::sensor_definition || pid == rdm::Pid::sensor_value) {
-    const auto number = number_in(index.empty() ? "0" : index, 0, 254);
+    const auto number = number_between(index.empty() ? "0" : index, 0, 254);
     return number ? std::optional(std::vector{static_cast<std::uint8_t>(*number)}) : std::nullopt;
   }
   if (pid == rdm::Pid::dmx_personality_description) {
-    const auto number = number_in(index.empty() ? "1" : index, 1, 255);
+    const auto number = number_between(index.empty() ? "1" : index, 1, 255);
     return number ? std::optional(std::vector{static_cast<std::uint8_t>(*number)}) : std::nullopt;
   }
   return index.empty() ? std::optional(std::vector<std::uint8_t>{}) : std::nullopt;
@@ -185,12 +185,12 @@ struct Setting {
 /// The setting that a person wants; else how to mend the request.
 tl::expected<Setting, std::string> setting_of(const std::string& what, const std::string& value) {
   if (what == "address") {
-    const auto address = number_in(value, 1, 512);
+    const auto address = number_between(value, 1, 512);
     if (!address) return tl::unexpected(fmt::format("{} is no start address: use 1 to 512", value));
     return Setting{rdm::Pid::dmx_start_address, rdm::encode_start_address(*address)};
   }
   if (what == "personality") {
-    const auto number = number_in(value, 1, 255);
+    const auto number = number_between(value, 1, 255);
     if (!number) return tl::unexpected(fmt::format("{} is no personality: use 1 to 255", value));
     return Setting{rdm::Pid::dmx_personality, {static_cast<std::uint8_t>(*number)}};
   }
@@ -231,7 +231,7 @@ int run_rdm_list(const RdmArguments& arguments) {
       }
       devices.push_back({universe.universe, std::move(*profile)});
       table.row(row_of(devices.back()));
-      all.push_back(json_of(devices.back(), universe.node));
+      all.push_back(rdm_device_json(devices.back(), universe.node));
     }
   }
   if (arguments.json) {

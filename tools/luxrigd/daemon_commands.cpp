@@ -33,7 +33,7 @@ const std::string& name_of(const Rig& rig, const ByHand& held) {
   return held.what == ByHand::What::level ? rig.fixtures[held.index].name : rig.points[held.index].name;
 }
 
-std::string value_of(const ByHand& held) {
+std::string value_text(const ByHand& held) {
   return held.what == ByHand::What::level ? fmt::format("level {:.4g}", held.value)
                                           : fmt::format("{:.4g} lx", held.value);
 }
@@ -44,7 +44,7 @@ std::string lines_of(const Rig& rig, const std::vector<ByHand>& held, Time at) {
   for (const ByHand& one : held) {
     const std::string until =
         one.until ? fmt::format("for {:.0f} s", to_seconds(*one.until - at)) : std::string("until it is released");
-    text += fmt::format("{}{}: {} by hand, {}{}", text.empty() ? "" : "\n", name_of(rig, one), value_of(one), until,
+    text += fmt::format("{}{}: {} by hand, {}{}", text.empty() ? "" : "\n", name_of(rig, one), value_text(one), until,
                         one.why.empty() ? "" : "; at present not so: " + one.why);
   }
   return text;

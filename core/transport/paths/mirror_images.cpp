@@ -30,7 +30,7 @@ double slope_density(double squared, double alpha) {
 /// Share of the light from slopes beyond a distance.
 double slope_tail(double squared, double alpha) { return 1 / (1 + squared / (alpha * alpha)); }
 
-ImageChoice chosen_by(const std::vector<double>& weights) {
+ImageChoice choice_of_images(const std::vector<double>& weights) {
   ImageChoice choice;
   const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
   if (!(sum > 0) || !std::isfinite(sum)) return choice;
@@ -60,7 +60,7 @@ MirrorImages::MirrorImages(const RayScene& scene, const EmitterSampler& lamps)
   std::vector<double> weights;
   for (const Plane& plane : planes_)
     for (std::size_t p = 0; p < places_; ++p) weights.push_back(plane.area_m2 * plane.specular * lamps.place_share(p));
-  from_anywhere_ = chosen_by(weights);
+  from_anywhere_ = choice_of_images(weights);
 }
 
 void MirrorImages::find_planes(const RayScene& scene) {
@@ -209,7 +209,7 @@ ImageChoice MirrorImages::seen_from(const Vec3& position_world_m, const Vec3& no
       weights.back() = plane.specular * lamps_.importance_cd(p, leaving) * std::max(cosine, 0.05) * shown /
                        (image->way_m * image->way_m);
     }
-  return chosen_by(weights);
+  return choice_of_images(weights);
 }
 
 }  // namespace luxrig

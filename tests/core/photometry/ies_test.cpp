@@ -39,7 +39,7 @@ std::string file_text(const std::vector<double>& vertical, const std::vector<dou
 }
 
 /// Flux by the midpoint rule over the whole sphere; uses only intensity_cd.
-double brute_flux_lm(const IntensityDistribution& of, int rings, int spokes) {
+double summed_flux_lm(const IntensityDistribution& of, int rings, int spokes) {
   double sum = 0;
   for (int i = 0; i < rings; ++i) {
     const double gamma_deg = 180 * (i + 0.5) / rings;
@@ -75,7 +75,7 @@ TEST_P(RealFiles, HaveTheFluxOfTheirInterpolatedIntensity) {
   const Intensity light = make_intensity(*file);
   // Midpoints of 0.05° rings and 1.25° spokes lie inside the cells, so only the rule's own error remains.
   const int spokes = file->horizontal_deg.size() == 1 ? 1 : 288;
-  EXPECT_NEAR(brute_flux_lm(*light, 3600, spokes) / light->flux_lm(), 1, 2e-5);
+  EXPECT_NEAR(summed_flux_lm(*light, 3600, spokes) / light->flux_lm(), 1, 2e-5);
 }
 
 TEST_P(RealFiles, ReturnTheirOwnValuesAtTheirOwnAngles) {

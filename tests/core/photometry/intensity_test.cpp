@@ -13,7 +13,7 @@ Vec3 at_gamma(double gamma_rad, double c_rad = 0.3) {
 }
 
 /// Flux of a round distribution by the midpoint rule: an independent check, good to about 1e-8.
-double brute_flux_lm(const IntensityDistribution& of, double to_rad) {
+double summed_round_flux_lm(const IntensityDistribution& of, double to_rad) {
   constexpr int kRings = 100'000;
   const double step = to_rad / kRings;
   double sum = 0;
@@ -31,7 +31,7 @@ TEST(Isotropic, GivesFluxOverFourPiEverywhere) {
   EXPECT_DOUBLE_EQ(bulb->flux_lm(), 800);
   EXPECT_DOUBLE_EQ(bulb->max_intensity_cd(), 800 / (4 * kPi));
   EXPECT_DOUBLE_EQ(bulb->emission_cone_rad(), 2 * kPi);
-  EXPECT_NEAR(brute_flux_lm(*bulb, kPi), 800, 1e-6);
+  EXPECT_NEAR(summed_round_flux_lm(*bulb, kPi), 800, 1e-6);
 }
 
 struct Angles {
@@ -52,7 +52,7 @@ TEST_P(SpotProfile, HasHalfAtTheBeamAngleAndATenthAtTheFieldAngle) {
 TEST_P(SpotProfile, IntegratesToItsFlux) {
   const auto [beam_deg, field_deg] = GetParam();
   const Intensity spot = make_spot(1000, rad_from_deg(beam_deg), rad_from_deg(field_deg));
-  EXPECT_NEAR(brute_flux_lm(*spot, rad_from_deg(field_deg)), 1000, 1e-4);
+  EXPECT_NEAR(summed_round_flux_lm(*spot, rad_from_deg(field_deg)), 1000, 1e-4);
 }
 
 TEST_P(SpotProfile, FallsSteadilyAndIsDarkBeyondTheFullFieldAngle) {
@@ -114,7 +114,7 @@ TEST(Spot, IsAGaussianForAGaussiansRatioOfAngles) {
   EXPECT_NEAR(at_quarter_cd / spot->max_intensity_cd(), std::exp2(-0.25), 1e-9);
   // A narrow Gaussian holds I0 π b² / ln 2 in all (sin γ ≈ γ), nine tenths of it above a tenth of its peak.
   const double whole_lm = spot->max_intensity_cd() * kPi * half_rad * half_rad / std::log(2.0);
-  EXPECT_NEAR(brute_flux_lm(*spot, half_rad * ratio) / (0.9 * whole_lm), 1, 1e-4);
+  EXPECT_NEAR(summed_round_flux_lm(*spot, half_rad * ratio) / (0.9 * whole_lm), 1, 1e-4);
 }
 
 TEST(Scaled, KeepsTheShapeAndHasTheFlux) {

@@ -9,6 +9,7 @@
 #include "core/rig/rig_file.h"
 #include "core/rig/schema.h"
 #include "tests/core/rig/kitchen_sink.h"
+#include "tests/core/rig/listed_problems.h"
 #include "tests/folders.h"
 
 namespace luxrig {
@@ -187,9 +188,7 @@ class KeysRead : public testing::Test {
     for (const Line& line : lines) text += line.text + "\n";
     const Checked<Rig> rig = parse_rig(text, "sink.toml", folder_);
     if (rig) return dump(*rig);
-    std::string problems;
-    for (const Problem& problem : rig.error()) problems += problem.text() + "\n";
-    return "REFUSED " + problems;
+    return "REFUSED " + test::listed(rig.error());
   }
 
   /// A changed name or reference must do more than raise a dangling reference.

@@ -5,21 +5,17 @@
 #include <fstream>
 #include <random>
 
+#include "tests/core/rig/listed_problems.h"
+
 namespace luxrig {
 namespace {
-
-std::string listed(const PointsTable& table) {
-  std::string out;
-  for (const Problem& problem : table.problems) out += problem.text() + "\n";
-  return out;
-}
 
 TEST(PointsCsv, ReadsEveryColumnInAnyOrder) {
   const auto table = parse_points_csv(
       "max_lx,weight,goal_lx,nz,ny,nx,z_m,y_m,x_m,name\n"
       "400,2,300,0,0,2,3,2.5,-1e0,a\n",
       "p.csv", 10);
-  ASSERT_TRUE(table.problems.empty()) << listed(table);
+  ASSERT_TRUE(table.problems.empty()) << test::listed(table.problems);
   ASSERT_EQ(table.rows.size(), 1u);
   const Point& p = table.rows[0].point;
   EXPECT_EQ(p.name, "a");
@@ -32,7 +28,7 @@ TEST(PointsCsv, ReadsEveryColumnInAnyOrder) {
 
 TEST(PointsCsv, UsesDefaultsForMissingValues) {
   const auto table = parse_points_csv("name,x_m,y_m,z_m,nx,ny,nz,goal_lx\na,1,2,3,,,,\n", "p.csv", 10);
-  ASSERT_EQ(table.rows.size(), 1u) << listed(table);
+  ASSERT_EQ(table.rows.size(), 1u) << test::listed(table.problems);
   EXPECT_EQ(table.rows[0].point.normal_world, Vec3::UnitZ());
   EXPECT_FALSE(table.rows[0].point.goal_lx);
   EXPECT_EQ(table.rows[0].point.weight, 1);
@@ -41,7 +37,7 @@ TEST(PointsCsv, UsesDefaultsForMissingValues) {
 TEST(PointsCsv, ReadsQuotesCommentsByteOrderMarkAndCarriageReturns) {
   const auto table = parse_points_csv(
       "\xEF\xBB\xBFname,x_m,y_m,z_m\r\n\r\n# not a point\r\n \"a \"\"b\"\", c\" , 1 ,2,3\r\nd,4,5,6", "p.csv", 10);
-  ASSERT_EQ(table.rows.size(), 2u) << listed(table);
+  ASSERT_EQ(table.rows.size(), 2u) << test::listed(table.problems);
   EXPECT_EQ(table.rows[0].point.name, "a \"b\", c");
   EXPECT_EQ(table.rows[0].in_file.line, 4);
   EXPECT_EQ(table.rows[0].in_file.column, 2);
@@ -57,7 +53,7 @@ TEST(PointsCsv, CountsColumnsInCharactersNotBytes) {
 
 TEST(PointsCsv, RefusesABadHeaderWithoutReadingFurther) {
   const auto unknown = parse_points_csv("name,x,y_m,z_m,y_m\na,1,2,3,4\nb,?\n", "p.csv", 10);
-  ASSERT_EQ(unknown.problems.size(), 3u) << listed(unknown);
+  ASSERT_EQ(unknown.problems.size(), 3u) << test::listed(unknown.problems);
   EXPECT_NE(unknown.problems[0].what.find("no column x_m"), std::string::npos);
   EXPECT_NE(unknown.problems[1].what.find("unknown column \"x\""), std::string::npos);
   EXPECT_NE(unknown.problems[1].mend.find("x_m"), std::string::npos);
@@ -95,7 +91,7 @@ TEST(PointsCsv, RoundTripsRandomPoints) {
     text += line;
   }
   const auto table = parse_points_csv(text, "p.csv", 1000);
-  ASSERT_EQ(table.rows.size(), written.size()) << listed(table);
+  ASSERT_EQ(table.rows.size(), written.size()) << test::listed(table.problems);
   for (std::size_t i = 0; i < written.size(); ++i) {
     EXPECT_EQ(table.rows[i].point.position_world_m, written[i].first);
     EXPECT_EQ(table.rows[i].point.goal_lx, written[i].second);

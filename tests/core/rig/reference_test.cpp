@@ -7,6 +7,7 @@
 
 #include "core/rig/rig_file.h"
 #include "core/rig/schema.h"
+#include "tests/core/rig/listed_problems.h"
 #include "tests/folders.h"
 
 namespace luxrig {
@@ -45,11 +46,7 @@ TEST(Reference, ExamplesTogetherMakeAValidRig) {
   std::ofstream(folder / "track-spot.ies") << "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 3 1 1 2 0 0 0\n1 1 10\n"
                                               "0 45 90\n0\n100 50 0\n";
   const Checked<Rig> rig = parse_rig(blocks("toml"), "REFERENCE.md", folder);
-  std::string problems;
-  if (!rig) {
-    for (const Problem& problem : rig.error()) problems += problem.text() + "\n";
-  }
-  ASSERT_TRUE(rig) << problems << blocks("toml");
+  ASSERT_TRUE(rig) << test::listed(rig.error()) << blocks("toml");
   EXPECT_EQ(rig->fixtures.size(), 8u) << "four, and one with four emitters";
   EXPECT_EQ(rig->points.size(), 4u);
   EXPECT_EQ(rig->points[3].name, "shelf 2, top");

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "core/rig/null_bus.h"
+#include "tests/core/rig/listed_problems.h"
 #include "tests/folders.h"
 
 namespace luxrig {
@@ -16,11 +17,7 @@ namespace {
 
 const std::filesystem::path kRooms = test::source_folder() / "tests/rigs/room";
 
-std::string listed(const std::vector<Problem>& problems) {
-  std::string out;
-  for (const Problem& problem : problems) out += problem.text() + "\n";
-  return out;
-}
+using test::listed;
 
 TEST(RigFile, ReadsARoomAsWritten) {
   const Checked<Rig> rig = load_rig(kRooms);

@@ -10,7 +10,7 @@
 namespace luxrig {
 namespace {
 
-Scene soup(double size_m, std::size_t count, Random& random) {
+Scene scattered_triangles(double size_m, std::size_t count, Random& random) {
   Scene scene;
   for (std::size_t i = 0; i < count; ++i) {
     const Vec3 middle = size_m * random.in_cube();
@@ -29,7 +29,7 @@ TEST(Shaft, ClearShaftsStopNoRayAndBlockedOnesStopAll) {
   int clear = 0, blocked = 0, unknown = 0, missed_clear = 0;
   for (int i = 0; i < 2'000; ++i) {
     const double size_m = std::pow(10, random.between(-3, 4));
-    Scene scene = soup(size_m, i % 3 == 0 ? 3 : 12, random);
+    Scene scene = scattered_triangles(size_m, i % 3 == 0 ? 3 : 12, random);
     if (i % 2 == 0) scene.origin_world_m = 1e4 * size_m * random.in_cube();
     const Vec3 at = scene.origin_world_m;
     const Vec3 from = at + size_m * random.in_cube(), middle = at + size_m * random.in_cube();
@@ -145,7 +145,7 @@ TEST(Shaft, AnEmptySceneIsClearAndAPointInsideAHullIsUndecided) {
   EXPECT_TRUE(within.planes.empty());
   EXPECT_TRUE(empty.surely_clear(within));
   Random random(2);
-  EXPECT_FALSE(RayScene(soup(1, 3, random)).surely_clear(within));
+  EXPECT_FALSE(RayScene(scattered_triangles(1, 3, random)).surely_clear(within));
 }
 
 }  // namespace

@@ -92,7 +92,7 @@ void expect_within_limits(const EmittanceProblem& p, const VectorXd& level, int 
 
 /// Distance of the negative gradient from the cone of the active constraints' normals (Farkas), relative to the
 /// columns' norms times that of the right-hand side. Independent of the solver's multipliers.
-double kkt_violation(const EmittanceProblem& p, const VectorXd& level) {
+double gradient_off_cone(const EmittanceProblem& p, const VectorXd& level) {
   const Index n = level.size();
   const double right = std::sqrt(goals_squared(p));
   if (right == 0) return 0;
@@ -189,7 +189,7 @@ TEST(Emittance, MeetsTheKktConditionsOnAThousandProblems) {
     const EmittanceProblem p = random_problem(seed, 25, 15);
     const auto solution = solve_emittance(p);
     ASSERT_TRUE(solution) << solution.error().detail;
-    const double violation = kkt_violation(p, solution->level);
+    const double violation = gradient_off_cone(p, solution->level);
     EXPECT_LT(violation, 1e-9) << "seed " << seed;
     EXPECT_LT(solution->kkt_residual, 1e-9) << "seed " << seed;
     worst = std::max(worst, violation);

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "tests/drivers/hex.h"
+
 namespace luxrig {
 namespace {
 
@@ -24,11 +26,9 @@ constexpr const char* kPalette =
 constexpr const char* kOneBit =
     "89504e470d0a1a0a0000000d4948445200000008000000010100000000cb7bd2ee0000000a49444154789c6358050000ac00"
     "ab660be46b0000000049454e44ae426082";
-std::string bytes_of(std::string_view hex) {
-  std::string bytes;
-  for (std::size_t i = 0; i + 1 < hex.size(); i += 2)
-    bytes += static_cast<char>(std::stoi(std::string(hex.substr(i, 2)), nullptr, 16));
-  return bytes;
+std::string png_of(std::string_view hex) {
+  const auto bytes = from_hex(hex);
+  return {bytes.begin(), bytes.end()};
 }
 std::string float_bytes(std::initializer_list<float> values, bool big_endian) {
   std::string bytes;
@@ -43,28 +43,28 @@ std::string float_bytes(std::initializer_list<float> values, bool big_endian) {
 using Samples = std::vector<float>;
 
 TEST(PictureFile, ReadsPngOfEveryKind) {
-  const auto grey = decode_picture(bytes_of(kGrey16));
+  const auto grey = decode_picture(png_of(kGrey16));
   ASSERT_TRUE(grey) << grey.error().detail;
   EXPECT_EQ(grey->full_scale_counts, 65535);
   EXPECT_EQ(grey->samples, (Samples{0, 1, 0x1234 / 65535.0f, 256 / 65535.0f}));
-  const auto rgb = decode_picture(bytes_of(kRgb8));
+  const auto rgb = decode_picture(png_of(kRgb8));
   ASSERT_TRUE(rgb) << rgb.error().detail;
   EXPECT_EQ(rgb->channels, 3);
   EXPECT_EQ(rgb->width_px, 2);
   EXPECT_EQ(rgb->samples, (Samples{1, 0, 0.2f, 10 / 255.0f, 20 / 255.0f, 30 / 255.0f}));
-  const auto see_through = decode_picture(bytes_of(kRgba8));
+  const auto see_through = decode_picture(png_of(kRgba8));
   ASSERT_TRUE(see_through) << see_through.error().detail;
   EXPECT_EQ(see_through->samples, (Samples{1, 0.4f, 0}));
-  const auto palette = decode_picture(bytes_of(kPalette));
+  const auto palette = decode_picture(png_of(kPalette));
   ASSERT_TRUE(palette) << palette.error().detail;
   EXPECT_EQ(palette->samples, (Samples{1, 128 / 255.0f, 64 / 255.0f, 0, 0, 0}));
-  const auto one_bit = decode_picture(bytes_of(kOneBit));
+  const auto one_bit = decode_picture(png_of(kOneBit));
   ASSERT_TRUE(one_bit) << one_bit.error().detail;
   EXPECT_EQ(one_bit->samples, (Samples{1, 0, 1, 0, 1, 0, 1, 0}));
 }
 
 TEST(PictureFile, RefusesDamagedPng) {
-  const std::string whole = bytes_of(kGrey16);
+  const std::string whole = png_of(kGrey16);
   for (std::size_t length = 0; length < whole.size() - 12; ++length)  // without its end chunk it is still complete
     EXPECT_FALSE(decode_picture(whole.substr(0, length))) << length;
   std::string damaged = whole;

@@ -52,7 +52,7 @@ class FaultyNetwork {
   std::vector<std::pair<unsigned, Packet>> late_;
 };
 
-std::vector<std::size_t> bytes_of(std::initializer_list<std::pair<std::size_t, std::size_t>> ranges) {
+std::vector<std::size_t> positions_in(std::initializer_list<std::pair<std::size_t, std::size_t>> ranges) {
   std::vector<std::size_t> all;
   for (const auto& [from, to] : ranges) {
     for (std::size_t at = from; at < to; ++at) all.push_back(at);
@@ -91,7 +91,7 @@ void watch(unsigned seed, const Hear& look_after_frame) {
 
 TEST(ReceiverFaults, SacnShowsOnlySentFramesInOrderAndLosesTheDeskInTime) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
-    FaultyNetwork network(seed, bytes_of({{0, 22}, {38, 44}, {115, 125}}));
+    FaultyNetwork network(seed, positions_in({{0, 22}, {38, 44}, {115, 125}}));
     sacn::ReceiverSettings settings;
     settings.universes = {1};
     sacn::Receiver receiver(settings);
@@ -120,7 +120,7 @@ TEST(ReceiverFaults, ArtnetShowsOnlySentFramesInOrderAndLosesTheDeskInTime) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     // Not the operation code (bytes 8, 9) and the length (16, 17): another one can make a valid packet. UDP's checksum
     // guards them.
-    FaultyNetwork network(seed, bytes_of({{0, 8}, {10, 11}}));
+    FaultyNetwork network(seed, positions_in({{0, 8}, {10, 11}}));
     artnet::ReceiverSettings settings;
     settings.port_addresses = {1};
     artnet::Receiver receiver(settings);
@@ -143,7 +143,7 @@ TEST(ReceiverFaults, ArtnetShowsOnlySentFramesInOrderAndLosesTheDeskInTime) {
 
 TEST(ReceiverFaults, TwoMergedSacnDesksShowTheBrighterOfSentFrames) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
-    const std::vector<std::size_t> fixed = bytes_of({{0, 22}, {38, 44}, {115, 125}});
+    const std::vector<std::size_t> fixed = positions_in({{0, 22}, {38, 44}, {115, 125}});
     FaultyNetwork networks[] = {{seed, fixed}, {seed + 1000, fixed}};
     sacn::ReceiverSettings settings;
     settings.universes = {1};

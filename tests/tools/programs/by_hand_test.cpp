@@ -33,13 +33,6 @@ Ran client(LiveRig& rig, std::vector<std::string> words) {
   return luxrig::testing::run(words);
 }
 
-double level_of(LiveRig& rig, const std::string& fixture) {
-  const json status = rig.status();
-  for (const json& f : status["fixtures"])
-    if (f["name"] == fixture) return f["level"].get<double>();
-  return -1;
-}
-
 double lux_of(const json& status, const std::string& point) {
   for (const json& p : status["points"])
     if (p["name"] == point) return p.value("measured_lux", p["predicted_lux"].get<double>());
@@ -49,7 +42,7 @@ double lux_of(const json& status, const std::string& point) {
 TEST(ByHandOverTheWire, ALevelAndAGoalSurviveCorrectionsAndARestartUntilReleased) {
   LiveRig rig(source("tests/rigs/room"));
   ASSERT_TRUE(rig.wait_phase("holding", 90s)) << rig.daemon().output();
-  const double before = level_of(rig, "bulb-1");
+  const double before = level_of(rig.status(), "bulb-1");
   const Ran held = client(rig, {"level", "spot-1", "5%"});
   ASSERT_EQ(held.code, 0) << held.output;
   EXPECT_NE(held.output.find("spot-1: level 0.05 by hand, until it is released"), std::string::npos) << held.output;
@@ -57,7 +50,7 @@ TEST(ByHandOverTheWire, ALevelAndAGoalSurviveCorrectionsAndARestartUntilReleased
   ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.last();
   std::this_thread::sleep_for(11s);  // longer than the wait between two drift corrections
   json status = rig.status();
-  EXPECT_NEAR(level_of(rig, "spot-1"), 0.05, 1e-6);
+  EXPECT_NEAR(level_of(rig.status(), "spot-1"), 0.05, 1e-6);
   EXPECT_NEAR(lux_of(status, "plinth-top"), 30, 1.5) << status;
   ASSERT_EQ(status["overrides"].size(), 2u) << status["overrides"];
   EXPECT_EQ(status["overrides"][0]["name"], "spot-1");
@@ -82,7 +75,7 @@ TEST(ByHandOverTheWire, ALevelAndAGoalSurviveCorrectionsAndARestartUntilReleased
   rig.start_daemon();
   ASSERT_TRUE(rig.wait_phase("holding", 90s)) << rig.daemon().output();
   status = rig.status();
-  EXPECT_NEAR(level_of(rig, "spot-1"), 0.05, 1e-6) << rig.daemon().output();
+  EXPECT_NEAR(level_of(rig.status(), "spot-1"), 0.05, 1e-6) << rig.daemon().output();
   ASSERT_EQ(status["overrides"].size(), 2u) << status["overrides"];
   EXPECT_GT(status["overrides"][0]["age_s"].get<double>(), 11);
   EXPECT_NEAR(lux_of(status, "plinth-top"), 30, 1.5) << status;
@@ -112,7 +105,7 @@ TEST(ByHandOverTheWire, TheCorrectionKeepsAPlansLevelsByHandAndGoals) {
   EXPECT_NE(applied.output.find("spot-1: level 0.05 by hand"), std::string::npos) << applied.output;
   ASSERT_TRUE(rig.wait_phase("holding", 60s));
   std::this_thread::sleep_for(11s);
-  for (const char* fixture : {"spot-1", "bulb-1"}) EXPECT_NEAR(level_of(rig, fixture), 0.05, 1e-6) << fixture;
+  for (const char* fixture : {"spot-1", "bulb-1"}) EXPECT_NEAR(level_of(rig.status(), fixture), 0.05, 1e-6) << fixture;
 
   // The rig file gets another goal. Solved and applied, it holds, although the daemon has read the old file.
   edited.replace("goal_lx = 150", "goal_lx = 90");

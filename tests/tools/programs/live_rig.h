@@ -16,6 +16,13 @@ inline bool has_alarm(const json& status, const std::string& text) {
   return false;
 }
 
+/// Level of a fixture in a status; -1 if it is not there.
+inline double level_of(const json& status, const std::string& fixture) {
+  for (const json& one : status.value("fixtures", json::array()))
+    if (one["name"] == fixture) return one.value("level", -1.0);
+  return -1;
+}
+
 class LiveRig {
  public:
   explicit LiveRig(std::string rig, std::vector<std::string> options = {})

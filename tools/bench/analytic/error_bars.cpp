@@ -14,7 +14,8 @@ namespace luxrig {
 namespace {
 
 /// per_edge    receivers along each edge of each wall: from some dozens on `gather` shares paths between them
-void add_rows(int seeds, int per_edge, double wanted, const BenchOptions& options, std::vector<BenchRow>& rows) {
+void add_rows_of_methods(int seeds, int per_edge, double wanted, const BenchOptions& options,
+                         std::vector<BenchRow>& rows) {
   const double edge_m = 3, reflectance = 0.6;
   const Vec3 source_m(1.7, 1.2, 2.0);
   Scene scene = make_cube(edge_m, reflectance);
@@ -69,8 +70,8 @@ void add_rows(int seeds, int per_edge, double wanted, const BenchOptions& option
 }  // namespace
 
 void add_error_bar_rows(const BenchOptions& options, std::vector<BenchRow>& rows) {
-  add_rows(options.quick ? 200 : 1000, 1, 0.02, options, rows);
-  add_rows(options.quick ? 20 : 200, 3, 0.05, options, rows);
+  add_rows_of_methods(options.quick ? 200 : 1000, 1, 0.02, options, rows);
+  add_rows_of_methods(options.quick ? 20 : 200, 3, 0.05, options, rows);
 }
 
 }  // namespace luxrig

@@ -63,8 +63,8 @@ LimitedLeastSquares least_squares_of(const EmittanceProblem& problem) {
   return p;
 }
 
-BenchRow row_of(const std::string& name, const std::string& method, double seconds, double kkt, double residual_norm,
-                Index in_use, int rounds, Index entries, const std::string& note) {
+BenchRow levels_row(const std::string& name, const std::string& method, double seconds, double kkt,
+                    double residual_norm, Index in_use, int rounds, Index entries, const std::string& note) {
   BenchRow row;
   row.case_name = name;
   row.method = method;
@@ -86,28 +86,30 @@ double processor_seconds(const Work& work) {
   return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
 }
 
-BenchRow row_of(const std::string& name, const std::string& method, double seconds, const LimitedLeastSquares& p,
-                const LimitedLeastSquaresResult& at, const std::string& note) {
+BenchRow levels_row(const std::string& name, const std::string& method, double seconds, const LimitedLeastSquares& p,
+                    const LimitedLeastSquaresResult& at, const std::string& note) {
   const VectorXd gradient = p.E.transpose() * (p.E * at.z - p.f);
-  return row_of(name, method, seconds, kkt_violation(p, at, row_multipliers(p.G, at, gradient)),
-                (p.E * at.z - p.f).norm(), (at.z.array() > 0).count(), at.iterations, (p.E.array() != 0).count(), note);
+  return levels_row(name, method, seconds, kkt_violation(p, at, row_multipliers(p.G, at, gradient)),
+                    (p.E * at.z - p.f).norm(), (at.z.array() > 0).count(), at.iterations, (p.E.array() != 0).count(),
+                    note);
 }
 
-void add_rows(const std::string& name, const EmittanceProblem& problem, bool quick, std::vector<BenchRow>& rows) {
+void add_rows_of_solvers(const std::string& name, const EmittanceProblem& problem, bool quick,
+                         std::vector<BenchRow>& rows) {
   const LimitedLeastSquares p = least_squares_of(problem);
   std::optional<LimitedLeastSquaresResult> many;
   const double many_seconds = processor_seconds([&] { many = solve_by_multipliers(p, {}); });
   if (many) {
-    rows.push_back(row_of(name, "many-at-a-time", many_seconds, p, *many,
-                          fmt::format("{} limits, {} bind", p.G.rows(), many->working_rows.size())));
+    rows.push_back(levels_row(name, "many-at-a-time", many_seconds, p, *many,
+                              fmt::format("{} limits, {} bind", p.G.rows(), many->working_rows.size())));
     rows.back().target_seconds = 1;
     say_row_made(rows.back());
   }
   if (!quick) {
     LimitedLeastSquaresResult one;
     const double one_seconds = processor_seconds([&] { one = solve_by_active_set(p, {}); });
-    rows.push_back(row_of(name, "one-at-a-time", one_seconds, p, one,
-                          fmt::format("{:.0f} times as long", one_seconds / many_seconds)));
+    rows.push_back(levels_row(name, "one-at-a-time", one_seconds, p, one,
+                              fmt::format("{:.0f} times as long", one_seconds / many_seconds)));
     say_row_made(rows.back());
   }
   std::optional<EmittanceSolution> solution;
@@ -115,9 +117,9 @@ void add_rows(const std::string& name, const EmittanceProblem& problem, bool qui
     if (auto solved = solve_emittance(problem)) solution = std::move(*solved);
   });
   if (!solution) return;
-  rows.push_back(row_of(name, "with-reasons", seconds, solution->kkt_residual, solution->normalised_error,
-                        (solution->level.array() > 0).count(), solution->iterations,
-                        (problem.lux_per_level.array() > 0).count(), "residual_norm is of the goal"));
+  rows.push_back(levels_row(name, "with-reasons", seconds, solution->kkt_residual, solution->normalised_error,
+                            (solution->level.array() > 0).count(), solution->iterations,
+                            (problem.lux_per_level.array() > 0).count(), "residual_norm is of the goal"));
   rows.back().target_seconds = 1;
   say_row_made(rows.back());
 }
@@ -149,14 +151,14 @@ std::vector<BenchRow> bench_levels(const BenchOptions& options) {
     if (!transport) continue;
     EmittanceProblem problem =
         problem_of(session->rig, transport->lux_per_level.topRows(static_cast<Index>(session->rig.points.size())));
-    add_rows(name, problem, options.quick, rows);
+    add_rows_of_solvers(name, problem, options.quick, rows);
     // Reflected light: a little from every lamp, more from nearby lamps.
     for (Index j = 0; j < problem.lux_per_level.cols(); ++j)
       for (Index i = 0; i < problem.lux_per_level.rows(); ++i)
         problem.lux_per_level(i, j) +=
             0.02 * (1 + 0.1 * std::sin(static_cast<double>(7 * i + 13 * j))) /
             (1 + 0.01 * std::pow(static_cast<double>(i) - static_cast<double>(j) * kWorks / spots, 2));
-    add_rows(name + "-reflections", problem, options.quick, rows);
+    add_rows_of_solvers(name + "-reflections", problem, options.quick, rows);
   }
   return rows;
 }

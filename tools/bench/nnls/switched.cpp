@@ -44,7 +44,7 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-BenchRow row_of(Eigen::Index relays, const std::string& method, bool switched, unsigned halls) {
+BenchRow switched_row(Eigen::Index relays, const std::string& method, bool switched, unsigned halls) {
   std::vector<double> errors, seconds;
   unsigned proven = 0;
   int iterations = 0;
@@ -80,8 +80,8 @@ std::vector<BenchRow> bench_switched(const BenchOptions& options) {
   for (const Eigen::Index relays : {4, 8, 16, 24, 32}) {
     if (fmt::format("relays-{}", relays).rfind(options.only, 0) != 0) continue;
     const unsigned halls = options.quick ? 3 : 20;
-    rows.push_back(row_of(relays, "branch-and-bound", true, halls));
-    rows.push_back(row_of(relays, "all-dim", false, halls));
+    rows.push_back(switched_row(relays, "branch-and-bound", true, halls));
+    rows.push_back(switched_row(relays, "all-dim", false, halls));
   }
   return rows;
 }

@@ -54,8 +54,8 @@ struct Stop {
 
 int seeds_of(const BenchOptions& options) { return options.quick ? 4 : 20; }
 
-void add_rows(const TransportCase& one, const Reference& reference, const Method& method, const Stop& stop,
-              const BenchOptions& options, std::vector<BenchRow>& rows) {
+void add_row_of_stop(const TransportCase& one, const Reference& reference, const Method& method, const Stop& stop,
+                     const BenchOptions& options, std::vector<BenchRow>& rows) {
   const int seeds = seeds_of(options);
   Measured last;
   std::vector<double> seconds, cpu_seconds, rms_off, worst_off, rms_stated;
@@ -172,7 +172,7 @@ void add_error_bar_rows_of_rooms(const BenchOptions& options, std::vector<BenchR
     for (const Method& method : methods())
       for (const Stop& stop : {Stop{"rms", room.wanted_rms, 0}, Stop{"worst", 0, room.wanted_worst}})
         if (method.reflects && stop.rms + stop.worst > 0 && (options.method.empty() || options.method == method.name))
-          add_rows(one, reference, method, stop, options, rows);
+          add_row_of_stop(one, reference, method, stop, options, rows);
   }
 }
 

@@ -61,7 +61,7 @@ Checked<OpenCamera> open_camera(const CameraArguments& arguments) {
 }
 
 /// As a file of linear light: dark noise below 0 becomes 0 there.
-Picture picture_of(const TakenPicture& taken) {
+Picture picture_without_negatives(const TakenPicture& taken) {
   Picture picture;
   picture.width_px = taken.width_px;
   picture.height_px = taken.height_px;
@@ -75,7 +75,7 @@ std::string line_text(const LinearityFit& fit) {
                      100 * fit.worst_residual);
 }
 
-nlohmann::json json_of(const LinearityFit& fit) {
+nlohmann::json linearity_json(const LinearityFit& fit) {
   return {{"rms", fit.rms_residual},
           {"worst", fit.worst_residual},
           {"dark_level", fit.dark_share},
@@ -93,14 +93,14 @@ void print_json(const PictureCamera& camera, const CameraCheck& check) {
                         {"saturation", check.saturation},
                         {"saturates", check.saturates},
                         {"flicker", check.flicker},
-                        {"as_it_is", json_of(check.as_it_is)},
-                        {"as_configured", json_of(check.as_configured)},
+                        {"as_it_is", linearity_json(check.as_it_is)},
+                        {"as_configured", linearity_json(check.as_configured)},
                         {"findings", nlohmann::json::array()}};
   if (check.curve)
     out["response"] = {{"like", check.shape.name},
                        {"exponent", check.shape.exponent},
                        {"off_that", check.shape.rms},
-                       {"through_it", json_of(check.through_curve)}};
+                       {"through_it", linearity_json(check.through_curve)}};
   if (check.noise)
     out["noise"] = {{"electrons_per_count", check.noise->electrons_per_count},
                     {"relative_error", check.noise->relative_error},
@@ -147,7 +147,7 @@ int run_camera_shot(const CameraArguments& arguments) {
   const auto taken = source.take(now());
   source.deactivate(now());
   if (!taken) return report(taken.error());
-  if (auto written = write_file(*arguments.output, to_pfm(picture_of(*taken))); !written)
+  if (auto written = write_file(*arguments.output, to_pfm(picture_without_negatives(*taken))); !written)
     return report(written.error());
   double sum = 0, most = 0;
   for (const Vec3f& pixel : taken->light) {

@@ -35,7 +35,7 @@ Checked<std::size_t> fixture_of(const Rig& rig, const std::string& name) {
                 mend_for_unknown(name, names, "the rig has no fixture"));
 }
 
-nlohmann::json json_of(const LevelCheck& check) {
+nlohmann::json level_check_json(const LevelCheck& check) {
   nlohmann::json out = {{"good", check.good},
                         {"camera_told", check.camera_told},
                         {"camera_linear", check.camera_linear},
@@ -104,7 +104,7 @@ int run_camera_levels(const CameraArguments& arguments, const Rig& rig, std::siz
   const auto check = check_by_levels(*series);
   if (!check) return report(check.error());
   if (arguments.json) {
-    nlohmann::json out = json_of(*check);
+    nlohmann::json out = level_check_json(*check);
     out["camera"] = spec.name;
     fmt::print("{}\n", out.dump(1, ' ', false, nlohmann::json::error_handler_t::replace));
   } else {

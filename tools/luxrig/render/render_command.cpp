@@ -33,7 +33,7 @@ namespace {
 constexpr int kMaxPasses = 4096;
 
 /// That of a plan, after its placed lights are hung; or each fixture at its highest level.
-Checked<HungPlan> wanted_look(const RenderOptions& options, const Rig& rig) {
+Checked<HungPlan> look_to_render(const RenderOptions& options, const Rig& rig) {
   if (!options.plan) {
     HungPlan highest{rig, hung_look(rig)};
     for (const Fixture& fixture : rig.fixtures) highest.look.levels.push_back(rig.max_level(fixture));
@@ -74,7 +74,7 @@ PhotographLook look_of(const RenderOptions& options, const Picture& picture, std
 Checked<HungPlan> load_rig_for_picture(const RenderOptions& options) {
   const auto rig = load_rig(options.rig);
   if (!rig) return tl::unexpected(rig.error());
-  return wanted_look(options, *rig);
+  return look_to_render(options, *rig);
 }
 
 namespace {

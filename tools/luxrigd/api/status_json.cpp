@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/luxrig/addresses.h"
+#include "tools/luxrig/vector_json.h"
 
 namespace luxrig {
 
@@ -34,8 +35,6 @@ void put_counts(nlohmann::json& out, const ShowStatus& show, double goal_toleran
 namespace {
 
 using nlohmann::json;
-
-json array_of(const Vec3& v) { return json::array({v.x(), v.y(), v.z()}); }
 
 /// Sets a number; leaves the key out if it is not finite.
 void set(json& object, const char* key, double value) {

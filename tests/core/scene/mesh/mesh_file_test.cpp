@@ -9,6 +9,8 @@
 #include <fstream>
 #include <limits>
 
+#include "tests/core/scene/mesh/mesh_maker.h"
+
 namespace luxrig {
 namespace {
 
@@ -33,11 +35,6 @@ class MeshFiles : public testing::Test {
   std::filesystem::path folder_;
 };
 
-template <class T>
-void put(std::string& bytes, T value) {
-  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
-}
-
 /// A wavy sheet of side x side squares as binary PLY (little-endian, as is this machine): 2·side² triangles.
 std::string sheet_ply(int side) {
   std::string bytes = "ply\nformat binary_little_endian 1.0\nelement vertex " +
@@ -46,17 +43,17 @@ std::string sheet_ply(int side) {
                       std::to_string(2 * side * side) + "\nproperty list uchar int vertex_indices\nend_header\n";
   for (int i = 0; i <= side; ++i) {
     for (int j = 0; j <= side; ++j) {
-      put(bytes, static_cast<float>(i));
-      put(bytes, static_cast<float>(j));
-      put(bytes, std::sin(0.1f * static_cast<float>(i + j)));
+      test::put_bytes(bytes, static_cast<float>(i));
+      test::put_bytes(bytes, static_cast<float>(j));
+      test::put_bytes(bytes, std::sin(0.1f * static_cast<float>(i + j)));
     }
   }
   for (int i = 0; i < side; ++i) {
     for (int j = 0; j < side; ++j) {
       const int v = i * (side + 1) + j;
       for (const auto& triangle : {std::array{v, v + 1, v + side + 2}, std::array{v, v + side + 2, v + side + 1}}) {
-        put(bytes, static_cast<unsigned char>(3));
-        for (const int index : triangle) put(bytes, index);
+        test::put_bytes(bytes, static_cast<unsigned char>(3));
+        for (const int index : triangle) test::put_bytes(bytes, index);
       }
     }
   }
@@ -74,7 +71,7 @@ std::string triangle_gltf(const std::string& nodes, const std::string& uri) {
 }
 std::string triangle_bytes() {
   std::string bytes;
-  for (const float value : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f}) put(bytes, value);
+  for (const float value : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f}) test::put_bytes(bytes, value);
   return bytes;
 }
 
@@ -164,12 +161,12 @@ TEST_F(MeshFiles, CountsCleanedTrianglesAndKeepsTheRest) {
       "element face 5\nproperty list uchar int vertex_indices\nend_header\n";
   const float nan = std::numeric_limits<float>::quiet_NaN();
   for (const Vec3f& v : {Vec3f(0, 0, 0), Vec3f(1, 0, 0), Vec3f(0, 1, 0), Vec3f(2, 0, 0), Vec3f(nan, 0, 0)}) {
-    for (int axis = 0; axis < 3; ++axis) put(bytes, v[axis]);
+    for (int axis = 0; axis < 3; ++axis) test::put_bytes(bytes, v[axis]);
   }
   const int faces[5][3] = {{0, 1, 2}, {0, 1, 3}, {0, 0, 2}, {0, 1, 4}, {1, 3, 2}};
   for (const auto& face : faces) {
-    put(bytes, static_cast<unsigned char>(3));
-    for (const int index : face) put(bytes, index);
+    test::put_bytes(bytes, static_cast<unsigned char>(3));
+    for (const int index : face) test::put_bytes(bytes, index);
   }
   const auto scene = load("dirty.ply", bytes);
   ASSERT_TRUE(scene.has_value()) << scene.error().front().text();

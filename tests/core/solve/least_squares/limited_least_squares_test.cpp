@@ -94,7 +94,7 @@ double distance_from_optimum(const LimitedLeastSquares& p, const VectorXd& z) {
   return std::max(worst, solve_nnls(columns, gradient).residual_norm);
 }
 
-double error_of(const LimitedLeastSquares& p, const VectorXd& z) { return (p.E * z - p.f).norm(); }
+double residual_norm_of(const LimitedLeastSquares& p, const VectorXd& z) { return (p.E * z - p.f).norm(); }
 
 TEST(LimitedLeastSquares, ManyConstraintsAtATimeMatchOneAtATime) {
   constexpr int kProblems = 600;
@@ -111,7 +111,7 @@ TEST(LimitedLeastSquares, ManyConstraintsAtATimeMatchOneAtATime) {
     ASSERT_TRUE(at->converged) << seed;
     const double kkt = distance_from_optimum(p, at->z);
     EXPECT_LT(kkt, 1e-9) << seed;
-    const double difference = std::abs(error_of(p, at->z) - error_of(p, reference.z));
+    const double difference = std::abs(residual_norm_of(p, at->z) - residual_norm_of(p, reference.z));
     EXPECT_LT(difference, 1e-10) << seed;
     const double tie = (at->z - reference.z).cwiseAbs().maxCoeff();
     EXPECT_LT(tie, 1e-3) << seed;  // the gradient is exact to 1e-14, the tie term is 1e-10
@@ -130,7 +130,7 @@ TEST(LimitedLeastSquares, TwoHundredLightsAtThreeHundredPointsMatchTheReference)
     const LimitedLeastSquaresResult at = solve_limited_least_squares(p, {});
     ASSERT_TRUE(at.converged) << seed;
     EXPECT_LT(distance_from_optimum(p, at.z), 1e-9) << seed;
-    EXPECT_NEAR(error_of(p, at.z), error_of(p, solve_by_active_set(p, {}).z), 1e-10) << seed;
+    EXPECT_NEAR(residual_norm_of(p, at.z), residual_norm_of(p, solve_by_active_set(p, {}).z), 1e-10) << seed;
   }
 }
 
@@ -170,7 +170,7 @@ TEST(LimitedLeastSquares, ALimitAtEveryGoalMatchesTheReference) {
     const LimitedLeastSquaresResult at = solve_limited_least_squares(p, {});
     ASSERT_TRUE(at.converged);
     EXPECT_LT(distance_from_optimum(p, at.z), 1e-9);
-    EXPECT_NEAR(error_of(p, at.z), error_of(p, solve_by_active_set(p, {}).z), 1e-10);
+    EXPECT_NEAR(residual_norm_of(p, at.z), residual_norm_of(p, solve_by_active_set(p, {}).z), 1e-10);
   }
 }
 
@@ -199,7 +199,7 @@ TEST(LimitedLeastSquares, ALimitOfZeroKeepsItsLightsDark) {
   ASSERT_TRUE(at.converged);
   EXPECT_LT(p.G.row(50).dot(at.z), 1e-15);
   EXPECT_LT(distance_from_optimum(p, at.z), 1e-9);
-  EXPECT_NEAR(error_of(p, at.z), error_of(p, solve_by_active_set(p, {}).z), 1e-10);
+  EXPECT_NEAR(residual_norm_of(p, at.z), residual_norm_of(p, solve_by_active_set(p, {}).z), 1e-10);
 }
 
 TEST(LimitedLeastSquares, StopsWhenAsked) {

@@ -21,7 +21,7 @@ constexpr double kBoundless = std::numeric_limits<double>::infinity();
 const double kNoGoal = std::numeric_limits<double>::quiet_NaN();
 
 /// Every third is degenerate: equal and dark lights, no room below a limit, highest level 0.
-EmittanceProblem random_problem(unsigned seed, Index max_points, Index max_lights) {
+EmittanceProblem random_switched_problem(unsigned seed, Index max_points, Index max_lights) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> uniform;
   const auto pick = [&](Index n) { return std::uniform_int_distribution<Index>(0, n - 1)(random); };
@@ -134,7 +134,7 @@ void expect_allowed(const EmittanceProblem& p, const VectorXd& level, unsigned s
 TEST(SwitchedLights, MatchTheBestOfAllSettings) {
   int with_switched = 0, with_some_on = 0, worse_than_dimmed = 0;
   for (unsigned seed = 0; seed < 600; ++seed) {
-    const EmittanceProblem p = random_problem(seed, 8, 7);
+    const EmittanceProblem p = random_switched_problem(seed, 8, 7);
     const auto solution = solve_emittance(p);
     ASSERT_TRUE(solution) << "seed " << seed << ": " << solution.error().detail;
     expect_allowed(p, solution->level, seed);

@@ -54,7 +54,7 @@ Packet art_sync() {
   };
 }
 
-int first_slot(ArtnetNode& node, Time now) {
+int first_slot_of_port(ArtnetNode& node, Time now) {
   const auto levels = node.levels(kPort, now);
   return levels ? (*levels)[0] : -1;
 }
@@ -208,7 +208,7 @@ TEST(ArtnetFarEnd, DropsTheTwentyOutOfOrderNumbersAndAcceptsAnyAtZero) {
       bool stale = false;
       for (int back = 0; back < 20; ++back) stale = stale || (last - back + 256) % 256 == next;
       stale = stale && last != 0 && next != 0;
-      EXPECT_EQ(first_slot(node, at_s(0.01)), stale ? 1 : 2) << last << " then " << next;
+      EXPECT_EQ(first_slot_of_port(node, at_s(0.01)), stale ? 1 : 2) << last << " then " << next;
     }
   }
 }
@@ -218,38 +218,38 @@ TEST(ArtnetFarEnd, MergesTwoSourcesReportsItAndIgnoresAThird) {
   node.receive(at_s(0), kDesk, levels_of(40));
   node.receive(at_s(0), kOther, levels_of(90));
   node.receive(at_s(0), kThird, levels_of(200));
-  EXPECT_EQ(first_slot(node, at_s(0)), 90);
+  EXPECT_EQ(first_slot_of_port(node, at_s(0)), 90);
   EXPECT_EQ(node.receive(at_s(0), kThird, art_poll())[0][182], 0x88);
   node.receive(at_s(1), kOther, levels_of(10));
-  EXPECT_EQ(first_slot(node, at_s(1)), 40);
+  EXPECT_EQ(first_slot_of_port(node, at_s(1)), 40);
 }
 
 TEST(ArtnetFarEnd, ForgetsASourceAfterTenSecondsAndHoldsTheLookOfTheLast) {
   ArtnetNode node({kPort});
   node.receive(at_s(0), kOther, levels_of(90));
   node.receive(at_s(5), kDesk, levels_of(40));
-  EXPECT_EQ(first_slot(node, at_s(10)), 90);
-  EXPECT_EQ(first_slot(node, at_s(10) + 1us), 40);
+  EXPECT_EQ(first_slot_of_port(node, at_s(10)), 90);
+  EXPECT_EQ(first_slot_of_port(node, at_s(10) + 1us), 40);
   EXPECT_EQ(node.receive(at_s(11), kDesk, art_poll())[0][182], 0x80);
-  EXPECT_EQ(first_slot(node, at_s(1000)), 40);
+  EXPECT_EQ(first_slot_of_port(node, at_s(1000)), 40);
   node.receive(at_s(1001), kThird, levels_of(7));  // there is room again
-  EXPECT_EQ(first_slot(node, at_s(1001)), 7);
+  EXPECT_EQ(first_slot_of_port(node, at_s(1001)), 7);
 }
 
 TEST(ArtnetFarEnd, WaitsForArtSyncOnceHeardUntilFourSecondsAfterTheLast) {
   ArtnetNode node({kPort});
   node.receive(at_s(0), kDesk, levels_of(10));
-  EXPECT_EQ(first_slot(node, at_s(0)), 10);
+  EXPECT_EQ(first_slot_of_port(node, at_s(0)), 10);
   node.receive(at_s(0.1), kDesk, art_sync());
   node.receive(at_s(0.2), kDesk, levels_of(20));
-  EXPECT_EQ(first_slot(node, at_s(0.2)), 10);
+  EXPECT_EQ(first_slot_of_port(node, at_s(0.2)), 10);
   node.receive(at_s(0.3), kDesk, art_sync());
-  EXPECT_EQ(first_slot(node, at_s(0.3)), 20);
+  EXPECT_EQ(first_slot_of_port(node, at_s(0.3)), 20);
   node.receive(at_s(0.4), kDesk, levels_of(30));
-  EXPECT_EQ(first_slot(node, at_s(4.3)), 20);
-  EXPECT_EQ(first_slot(node, at_s(4.3) + 1us), 30);
+  EXPECT_EQ(first_slot_of_port(node, at_s(4.3)), 20);
+  EXPECT_EQ(first_slot_of_port(node, at_s(4.3) + 1us), 30);
   node.receive(at_s(4.5), kDesk, levels_of(40));
-  EXPECT_EQ(first_slot(node, at_s(4.5)), 40);
+  EXPECT_EQ(first_slot_of_port(node, at_s(4.5)), 40);
 }
 
 TEST(ArtnetFarEnd, IgnoresArtSyncFromOthersThanItsSource) {
@@ -257,7 +257,7 @@ TEST(ArtnetFarEnd, IgnoresArtSyncFromOthersThanItsSource) {
   node.receive(at_s(0), kDesk, levels_of(10));
   node.receive(at_s(0.1), kOther, art_sync());
   node.receive(at_s(0.2), kDesk, levels_of(20));
-  EXPECT_EQ(first_slot(node, at_s(0.2)), 20);  // still immediate
+  EXPECT_EQ(first_slot_of_port(node, at_s(0.2)), 20);  // still immediate
 }
 
 TEST(ArtnetFarEnd, DoesNotSynchroniseWhileItMerges) {
@@ -266,9 +266,9 @@ TEST(ArtnetFarEnd, DoesNotSynchroniseWhileItMerges) {
   node.receive(at_s(0), kDesk, art_sync());
   node.receive(at_s(0.1), kDesk, levels_of(50));
   node.receive(at_s(0.2), kOther, levels_of(20));
-  EXPECT_EQ(first_slot(node, at_s(0.2)), 50);
+  EXPECT_EQ(first_slot_of_port(node, at_s(0.2)), 50);
   node.receive(at_s(0.3), kDesk, levels_of(60));
-  EXPECT_EQ(first_slot(node, at_s(0.3)), 60);
+  EXPECT_EQ(first_slot_of_port(node, at_s(0.3)), 60);
 }
 
 }  // namespace

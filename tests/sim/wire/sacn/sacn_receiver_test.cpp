@@ -82,7 +82,7 @@ Packet packet_of(const Sent& sent) {
   return packet;
 }
 
-int first_slot(SacnReceiver& receiver, Time now) {
+int first_slot_of_universe(SacnReceiver& receiver, Time now) {
   const auto levels = receiver.levels(3, now);
   return levels ? (*levels)[0] : -1;
 }
@@ -200,7 +200,7 @@ TEST(SacnFarEnd, DropsExactlyTheTwentyOutOfOrderNumbers) {
       const Verdict verdict =
           receiver.receive(at_s(0.01), packet_of({.sequence = static_cast<std::uint8_t>(next), .level = 99}));
       EXPECT_EQ(verdict, stale ? Verdict::out_of_order : Verdict::accepted) << last << " then " << next;
-      EXPECT_EQ(first_slot(receiver, at_s(0.01)), stale ? 0 : 99) << last << " then " << next;
+      EXPECT_EQ(first_slot_of_universe(receiver, at_s(0.01)), stale ? 0 : 99) << last << " then " << next;
     }
   }
 }
@@ -224,19 +224,19 @@ TEST(SacnFarEnd, ATerminatedSourceIsGoneAtOnceWithItsLevels) {
   EXPECT_EQ(receiver.receive(at_s(0.1), packet_of({.source = 1, .sequence = 10, .options = kTerminated, .level = 11})),
             Verdict::terminated);
   EXPECT_EQ(receiver.sources(3, at_s(0.1)), 0u);
-  EXPECT_EQ(first_slot(receiver, at_s(0.1)), 200);  // the last look is held
+  EXPECT_EQ(first_slot_of_universe(receiver, at_s(0.1)), 200);  // the last look is held
   // It counts as new when it returns: an old number is no longer stale.
   EXPECT_EQ(receiver.receive(at_s(0.2), packet_of({.source = 1, .sequence = 9, .level = 30})), Verdict::accepted);
-  EXPECT_EQ(first_slot(receiver, at_s(0.2)), 30);
+  EXPECT_EQ(first_slot_of_universe(receiver, at_s(0.2)), 30);
 }
 
 TEST(SacnFarEnd, OnlyTheHighestPresentPriorityCounts) {
   SacnReceiver receiver;
   receiver.receive(at_s(0), packet_of({.source = 1, .priority = 100, .level = 200}));
   receiver.receive(at_s(0), packet_of({.source = 2, .priority = 150, .level = 20}));
-  EXPECT_EQ(first_slot(receiver, at_s(0)), 20);
+  EXPECT_EQ(first_slot_of_universe(receiver, at_s(0)), 20);
   receiver.receive(at_s(0.1), packet_of({.source = 2, .priority = 150, .sequence = 1, .options = kTerminated}));
-  EXPECT_EQ(first_slot(receiver, at_s(0.1)), 200);
+  EXPECT_EQ(first_slot_of_universe(receiver, at_s(0.1)), 200);
 }
 
 TEST(SacnFarEnd, MergesEqualPrioritiesByTheHighestSlotValue) {
@@ -257,9 +257,9 @@ TEST(SacnFarEnd, ASourceIsLostAfterTwoAndAHalfSecondsHoldingItsLook) {
   receiver.receive(at_s(1), packet_of({.sequence = 9, .level = 200}));
   EXPECT_EQ(receiver.sources(3, at_s(1) + 2500ms), 1u);
   EXPECT_EQ(receiver.sources(3, at_s(1) + 2500ms + 1us), 0u);
-  EXPECT_EQ(first_slot(receiver, at_s(1000)), 200);
+  EXPECT_EQ(first_slot_of_universe(receiver, at_s(1000)), 200);
   EXPECT_EQ(receiver.receive(at_s(1001), packet_of({.sequence = 9, .level = 30})), Verdict::accepted);
-  EXPECT_EQ(first_slot(receiver, at_s(1001)), 30);
+  EXPECT_EQ(first_slot_of_universe(receiver, at_s(1001)), 30);
 }
 
 TEST(SacnFarEnd, AStalePacketDoesNotKeepASourceAlive) {
@@ -273,7 +273,8 @@ TEST(SacnFarEnd, SourcesLostTogetherDoNotHandOverToEachOther) {
   SacnReceiver receiver;
   receiver.receive(at_s(0), packet_of({.source = 1, .priority = 50, .level = 255}));
   receiver.receive(at_s(0), packet_of({.source = 2, .priority = 100, .level = 40}));
-  for (double seconds = 0; seconds < 4; seconds += 0.01) EXPECT_EQ(first_slot(receiver, at_s(seconds)), 40) << seconds;
+  for (double seconds = 0; seconds < 4; seconds += 0.01)
+    EXPECT_EQ(first_slot_of_universe(receiver, at_s(seconds)), 40) << seconds;
 }
 
 TEST(SacnFarEnd, DataForAnotherStartCodeChangesNothing) {
@@ -299,14 +300,14 @@ TEST(SacnFarEnd, KeepsSlotsThatAPacketDoesNotCarry) {
 TEST(SacnFarEnd, SynchronisedDataWaitsOnlyOnceASynchronisationWasHeard) {
   SacnReceiver receiver;
   receiver.receive(at_s(0), packet_of({.sequence = 0, .level = 10, .sync_universe = 9000}));
-  EXPECT_EQ(first_slot(receiver, at_s(0)), 10);
+  EXPECT_EQ(first_slot_of_universe(receiver, at_s(0)), 10);
   EXPECT_EQ(receiver.receive(at_s(0.1), sync_9000()), Verdict::accepted);
   receiver.receive(at_s(0.2), packet_of({.sequence = 1, .level = 20, .sync_universe = 9000}));
-  EXPECT_EQ(first_slot(receiver, at_s(0.2)), 10);
+  EXPECT_EQ(first_slot_of_universe(receiver, at_s(0.2)), 10);
   receiver.receive(at_s(0.25), packet_of({.sequence = 2, .level = 30, .sync_universe = 9000}));
-  EXPECT_EQ(first_slot(receiver, at_s(0.25)), 10);
+  EXPECT_EQ(first_slot_of_universe(receiver, at_s(0.25)), 10);
   receiver.receive(at_s(0.3), sync_9000());
-  EXPECT_EQ(first_slot(receiver, at_s(0.3)), 30);
+  EXPECT_EQ(first_slot_of_universe(receiver, at_s(0.3)), 30);
 }
 
 TEST(SacnFarEnd, ASynchronisationForAnotherUniverseReleasesNothing) {
@@ -316,7 +317,7 @@ TEST(SacnFarEnd, ASynchronisationForAnotherUniverseReleasesNothing) {
   receiver.receive(at_s(0), sync_9000());
   receiver.receive(at_s(0.1), packet_of({.sequence = 1, .level = 20, .sync_universe = 9000}));
   receiver.receive(at_s(0.2), other);
-  EXPECT_EQ(first_slot(receiver, at_s(0.2)), -1);
+  EXPECT_EQ(first_slot_of_universe(receiver, at_s(0.2)), -1);
   other[45] = 0, other[46] = 0;
   EXPECT_EQ(receiver.receive(at_s(0.2), other), Verdict::not_sacn);  // E1.31 6.3.3: universe 0 synchronises nothing
 }
@@ -328,9 +329,9 @@ TEST(SacnFarEnd, ForceSyncDecidesToContinueOrFreezeWhenSynchronisationStops) {
     receiver.receive(at_s(0), packet_of({.sequence = 0, .options = options, .level = 10, .sync_universe = 9000}));
     receiver.receive(at_s(0), sync_9000());
     receiver.receive(at_s(2.5), packet_of({.sequence = 1, .options = options, .level = 20, .sync_universe = 9000}));
-    EXPECT_EQ(first_slot(receiver, at_s(2.5)), 10);
+    EXPECT_EQ(first_slot_of_universe(receiver, at_s(2.5)), 10);
     receiver.receive(at_s(2.6), packet_of({.sequence = 2, .options = options, .level = 30, .sync_universe = 9000}));
-    EXPECT_EQ(first_slot(receiver, at_s(2.6)), go_on ? 30 : 10);
+    EXPECT_EQ(first_slot_of_universe(receiver, at_s(2.6)), go_on ? 30 : 10);
   }
 }
 

@@ -14,7 +14,7 @@
 namespace luxrig {
 namespace {
 
-LightInForce light_of(std::size_t fixtures, double level) {
+LightInForce light_at_level(std::size_t fixtures, double level) {
   LightInForce light;
   light.hold_s = 5;
   light.fade_s = 3;
@@ -30,7 +30,7 @@ TEST(LastLook, ReadsTheNewestLight) {
   ASSERT_TRUE(memory);
   EXPECT_FALSE(memory->take());
   for (const double level : {0.25, 0.75, 0.5}) {
-    memory->put(light_of(7, level), true);
+    memory->put(light_at_level(7, level), true);
     const auto light = memory->take();
     ASSERT_TRUE(light);
     EXPECT_EQ(light->hold_s, 5);
@@ -40,7 +40,7 @@ TEST(LastLook, ReadsTheNewestLight) {
     EXPECT_EQ(light->look.joints[6].tilt_rad, -level);
     EXPECT_EQ(light->silent[0], level > 0.5);
   }
-  memory->put(light_of(7, 0.5), false);
+  memory->put(light_at_level(7, 0.5), false);
   EXPECT_FALSE(memory->take()) << "nothing goes out";
   EXPECT_FALSE(memory->ended());
   memory->end();
@@ -79,7 +79,7 @@ TEST(LastLook, OfAnotherRigIsRefused) {
 TEST(LastLook, OfAFaultyWriterStaysWithinBounds) {
   auto memory = LastLookMemory::create(2);
   ASSERT_TRUE(memory);
-  LightInForce light = light_of(2, 0.5);
+  LightInForce light = light_at_level(2, 0.5);
   light.look.levels = {std::nan(""), 7};
   light.safe_levels = {-1, std::numeric_limits<double>::infinity()};
   light.hold_s = std::nan("");
@@ -102,7 +102,7 @@ TEST(LastLook, IsWholeWheneverItsWriterDies) {
     const pid_t writer = ::fork();
     if (writer == 0) {
       for (int i = 0;; ++i) {
-        memory->put(light_of(500, (i % 100) / 100.0), true);
+        memory->put(light_at_level(500, (i % 100) / 100.0), true);
         memory->beat(LastLookMemory::Beat::output);
       }
     }

@@ -15,7 +15,7 @@ Rig rig_of(std::size_t fixtures, std::size_t points, std::size_t meters) {
   return rig;
 }
 
-KeptLight light_of(const Rig& rig, bool daylit) {
+KeptLight random_light(const Rig& rig, bool daylit) {
   const auto points = static_cast<Eigen::Index>(rig.points.size());
   const auto meters = static_cast<Eigen::Index>(rig.luxmeters.size());
   const auto lights = static_cast<Eigen::Index>(rig.fixtures.size());
@@ -37,7 +37,7 @@ TEST(LightStore, RoundTrips) {
   for (const bool daylit : {false, true}) {
     for (const std::size_t meters : {0u, 2u}) {
       const Rig rig = rig_of(3, 5, meters);
-      const KeptLight light = light_of(rig, daylit);
+      const KeptLight light = random_light(rig, daylit);
       const auto back = light_of_bytes(light_bytes(light, 42), 42, rig);
       ASSERT_TRUE(back) << daylit << meters;
       EXPECT_EQ(back->joints, light.joints);
@@ -51,7 +51,7 @@ TEST(LightStore, RoundTrips) {
 
 TEST(LightStore, RefusesFilesOfAnotherRigOrKey) {
   const Rig rig = rig_of(3, 5, 2);
-  const std::string bytes = light_bytes(light_of(rig, true), 42);
+  const std::string bytes = light_bytes(random_light(rig, true), 42);
   EXPECT_FALSE(light_of_bytes(bytes, 43, rig));
   EXPECT_FALSE(light_of_bytes(bytes, 42, rig_of(4, 5, 2)));
   EXPECT_FALSE(light_of_bytes(bytes, 42, rig_of(3, 6, 2)));
@@ -60,7 +60,7 @@ TEST(LightStore, RefusesFilesOfAnotherRigOrKey) {
 
 TEST(LightStore, RefusesDamagedFiles) {
   const Rig rig = rig_of(3, 5, 2);
-  const std::string bytes = light_bytes(light_of(rig, true), 42);
+  const std::string bytes = light_bytes(random_light(rig, true), 42);
   std::mt19937 random(7);
   for (std::size_t cut = 0; cut < bytes.size(); cut += 7) EXPECT_FALSE(light_of_bytes(bytes.substr(0, cut), 42, rig));
   for (int trial = 0; trial < 2000; ++trial) {
