@@ -163,7 +163,7 @@ int in_a_named_namespace(int a%d) { return a%d; }
             ("core/show/a.cpp", "core/show/parts/b.cpp"),
             ("core/result.cpp", "core/parallel.cpp"),
             ("drivers/dmx/a.cpp", "drivers/b.cpp"),
-            ("tools/luxrig/a.cpp", "tools/luxrigd/state/b.cpp"),
+            ("tools/luxrig/command_table.cpp", "tools/luxrigd/state/b.cpp"),
             ("tools/process/a.cpp", "tools/terminal/b.cpp"),
             ("tools/bench/a.cpp", "tools/bench/nnls/b.cpp"),
             ("tools/luxrig-sim/a.cpp", "tools/luxrig-sim/main.cpp"),
@@ -179,7 +179,7 @@ int in_a_named_namespace(int a%d) { return a%d; }
 
     def test_leaves_alone_the_functions_of_different_programs(self):
         apart = """core/result.cpp core/show/a.cpp core/rig/a.cpp drivers/a.cpp sim/a.cpp tools/luxrig/a.cpp
-            tools/luxrig/main.cpp tools/luxrig/command_table.cpp tools/luxrigd/main.cpp tools/http/a.cpp
+            tools/luxrig/main.cpp tools/luxrigd/main.cpp tools/bench/main.cpp tools/http/a.cpp
             tools/process/a.cpp tools/bench/a.cpp tools/bench/rooms/a.cpp tools/bench/methods/a.cpp
             tests/core/show/a_test.cpp tests/core/show/a_accuracy_test.cpp tests/core/show/a_determinism_test.cpp
             tests/core/rig/a_test.cpp tests/drivers/a_test.cpp tests/tools/luxrig/a_test.cpp
