@@ -3,7 +3,7 @@
 namespace luxrig {
 
 // Instead of Eigen's FromTwoVectors: its singular value decomposition takes a compiler seconds in every file, and its
-// rotation of nearly opposite vectors is orthonormal to 1e-4 only.
+// rotation of nearly opposite vectors is orthonormal to 2e-3 only.
 Mat3 shortest_rotation(const Vec3& from, const Vec3& to) {
   // The lengths of sum and difference give half the angle without cancellation. The shorter of the two is at right
   // angles to the longer, but for rounding.
