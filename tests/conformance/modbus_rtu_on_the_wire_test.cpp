@@ -217,8 +217,7 @@ TEST(ModbusRtuLine, ReportsAPortThatRejectsItsSettings) {
 
 TEST(ModbusRtuLine, ResumesWhenTheAdapterIsPluggedBackIn) {
   RealLine line(three_meters());
-  line.run(0.5, 0.25);
-  ASSERT_TRUE(line.all_at(0.25));
+  ASSERT_TRUE(line.run_until_read(0, 0.25)) << line.health("the-bus").detail;
   line.far.faults().set("the-bus", sim::FaultKind::dead, true);
   line.run(1.0, 0.5);
   EXPECT_EQ(line.health("the-bus").life, Life::faulted);
@@ -304,21 +303,18 @@ TEST_P(Watchdog, IsArmedAndPutsTheLightOutWhenWritesStop) {
   EXPECT_TRUE(line.all_at(0.5));
   std::this_thread::sleep_for(milliseconds(1000));
   EXPECT_TRUE(line.all_at(0)) << "2 s after the last write";
-  line.run(1.0, 0.75);
-  EXPECT_TRUE(line.all_at(0.75));
+  EXPECT_TRUE(line.run_until_read(0, 0.75)) << line.health("the-bus").detail;
 }
 
 TEST_P(Watchdog, IsArmedAgainAfterAPowerLoss) {
   RealLine line(product_rig(GetParam(), fixtures("wago-750-559", 1, 2)));
-  line.run(0.5, 0.5);
-  ASSERT_TRUE(line.all_at(0.5));
+  ASSERT_TRUE(line.run_until_read(0, 0.5)) << line.health("the-bus").detail;
   line.far.faults().set(line.rig.fixtures[0].name, sim::FaultKind::unpowered, true);
   line.run(1.5, 0.5);
   EXPECT_TRUE(line.all_at(0));
   EXPECT_EQ(line.health(line.rig.fixtures[0].name).life, Life::faulted);
   line.far.faults().clear();
-  line.run(3.0, 0.5);
-  EXPECT_TRUE(line.all_at(0.5)) << line.health("the-bus").detail;
+  EXPECT_TRUE(line.run_until_read(0, 0.5)) << line.health("the-bus").detail;
   std::this_thread::sleep_for(milliseconds(2500));
   EXPECT_TRUE(line.all_at(0)) << "its watchdog was armed anew";
 }
