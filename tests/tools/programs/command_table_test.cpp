@@ -140,13 +140,14 @@ TEST(CommandTable, BashCompletesCommandsOptionsWordsAndRigs) {
 }
 
 TEST(CommandTable, EveryProgramPrintsItsShellCompletions) {
-  for (const char* name : {"luxrig", "luxrigd", "luxrig-sim"}) {
+  for (const char* name : {"luxrig", "luxrig-bench", "luxrigd", "luxrig-sim"}) {
     for (const char* shell : {"bash", "zsh", "fish"}) {
       const Ran ran = luxrig::testing::run({program(name), "--completion", shell});
       EXPECT_EQ(ran.code, 0) << name << shell;
       EXPECT_NE(ran.output.find("--complete"), std::string::npos) << ran.output;
-      if (std::string(name) == "luxrig")
+      if (std::string(name) == "luxrig") {
         EXPECT_EQ(luxrig::testing::run({program(name), "completion", shell}).output, ran.output);
+      }
     }
   }
   EXPECT_EQ(luxrig::testing::run({program("luxrig"), "completion", "fihs"}).code, 2);
