@@ -105,6 +105,44 @@ void dim_by_worth(double room_lx, double dimmed_lx, const Eigen::MatrixXd& worst
   }
 }
 
+/// scale_to_limits() with a limit for each row by max_lx_of(row).
+template <class Limit>
+void scale_rows(const Eigen::MatrixXd& worst_lux_per_level, Eigen::Index rows, const Limit& max_lx_of,
+                std::span<double> level, double relief, std::span<const std::uint8_t> switched,
+                const LampWorth& worth) {
+  const auto lights = std::min<Eigen::Index>(worst_lux_per_level.cols(), static_cast<Eigen::Index>(level.size()));
+  // Allows for rounding, so that the limit holds in whatever order the contributions are added up.
+  const double rounding = 2.0 * static_cast<double>(lights + 2) * std::numeric_limits<double>::epsilon();
+  // One row after the other: scaling only takes light away, so a row that is met stays met.
+  for (Eigen::Index row = 0; row < rows; ++row) {
+    const double max_lx = max_lx_of(row);
+    double lux = 0;
+    bool unknown = false;
+    for (Eigen::Index j = 0; j < lights; ++j) {
+      const double worst = worst_lux_per_level(row, j);
+      if (level[static_cast<std::size_t>(j)] > 0) {
+        if (!std::isfinite(worst)) unknown = true;
+        lux += worst > 0 ? worst * level[static_cast<std::size_t>(j)] : 0.0;
+      }
+    }
+    if (!unknown && lux <= max_lx * (1 - rounding)) continue;
+    if (!unknown && lux <= 0 && max_lx >= 0) continue;
+    // Below the smallest normal number, products lose their relative accuracy, so dark is good enough.
+    double most = max_lx > 1e-290 && !unknown ? max_lx * (1 - 2 * rounding) : 0.0;
+    if (relief > 0 && std::isfinite(lux)) most += relief * (lux - most);
+    const OfRow set = switch_off_above(most, row, worst_lux_per_level, switched, level);
+    const double room_lx = most - set.switched;
+    if (std::isfinite(lux) && set.dimmed > 0 && room_lx > 0) {
+      if (set.dimmed > room_lx) dim_by_worth(room_lx, set.dimmed, worst_lux_per_level, row, switched, worth, level);
+      continue;
+    }
+    for (Eigen::Index j = 0; j < lights; ++j) {
+      const double worst = worst_lux_per_level(row, j);
+      if ((worst > 0 || !std::isfinite(worst)) && !is_on_or_off(switched, j)) level[static_cast<std::size_t>(j)] = 0;
+    }
+  }
+}
+
 }  // namespace
 
 double fade_share(FadeCurve curve, double x) {
@@ -159,37 +197,9 @@ double level_on_the_way(double from, double to, double share, bool switched) {
 
 void scale_to_limits(const Eigen::MatrixXd& worst_lux_per_level, const Eigen::VectorXd& max_lx, std::span<double> level,
                      double relief, std::span<const std::uint8_t> switched, const LampWorth& worth) {
-  const auto lights = std::min<Eigen::Index>(worst_lux_per_level.cols(), static_cast<Eigen::Index>(level.size()));
-  const Eigen::Index rows = std::min(worst_lux_per_level.rows(), max_lx.size());
-  // Allows for rounding, so that the limit holds in whatever order the contributions are added up.
-  const double rounding = 2.0 * static_cast<double>(lights + 2) * std::numeric_limits<double>::epsilon();
-  // One row after the other: scaling only takes light away, so a row that is met stays met.
-  for (Eigen::Index row = 0; row < rows; ++row) {
-    double lux = 0;
-    bool unknown = false;
-    for (Eigen::Index j = 0; j < lights; ++j) {
-      const double worst = worst_lux_per_level(row, j);
-      if (level[static_cast<std::size_t>(j)] > 0) {
-        if (!std::isfinite(worst)) unknown = true;
-        lux += worst > 0 ? worst * level[static_cast<std::size_t>(j)] : 0.0;
-      }
-    }
-    if (!unknown && lux <= max_lx[row] * (1 - rounding)) continue;
-    if (!unknown && lux <= 0 && max_lx[row] >= 0) continue;
-    // Below the smallest normal number, products lose their relative accuracy, so dark is good enough.
-    double most = max_lx[row] > 1e-290 && !unknown ? max_lx[row] * (1 - 2 * rounding) : 0.0;
-    if (relief > 0 && std::isfinite(lux)) most += relief * (lux - most);
-    const OfRow set = switch_off_above(most, row, worst_lux_per_level, switched, level);
-    const double room_lx = most - set.switched;
-    if (std::isfinite(lux) && set.dimmed > 0 && room_lx > 0) {
-      if (set.dimmed > room_lx) dim_by_worth(room_lx, set.dimmed, worst_lux_per_level, row, switched, worth, level);
-      continue;
-    }
-    for (Eigen::Index j = 0; j < lights; ++j) {
-      const double worst = worst_lux_per_level(row, j);
-      if ((worst > 0 || !std::isfinite(worst)) && !is_on_or_off(switched, j)) level[static_cast<std::size_t>(j)] = 0;
-    }
-  }
+  scale_rows(
+      worst_lux_per_level, std::min(worst_lux_per_level.rows(), max_lx.size()),
+      [&](Eigen::Index row) { return max_lx[row]; }, level, relief, switched, worth);
 }
 
 /// An on-or-off lamp that is given less than full level is off.
@@ -212,7 +222,19 @@ void OutputProgram::own_levels_at(Time now, std::span<double> level) const {
     level[i] = wanted > 0 && most > 0 ? std::min(wanted, std::min(most, 1.0)) : 0.0;
   }
   switch_off_partial(level);
-  scale_to_limits(worst_lux_per_level, max_lx, level, 0, switched, worth);
+  const double left = excess_share(now);
+  scale_rows(
+      worst_lux_per_level, std::min(worst_lux_per_level.rows(), max_lx.size()),
+      [&](Eigen::Index row) {
+        return left > 0 && row < excess_lx.size() ? max_lx[row] + left * excess_lx[row] : max_lx[row];
+      },
+      level, 0, switched, worth);
+}
+
+double OutputProgram::excess_share(Time now) const {
+  if (excess_lx.size() == 0 || now >= excess_since + excess_fades) return 0;
+  if (now <= excess_since) return 1;
+  return 1 - to_seconds(now - excess_since) / to_seconds(excess_fades);
 }
 
 bool OutputProgram::desk_has_a_say(Time now) const {

@@ -80,6 +80,11 @@ struct OutputProgram {
   Eigen::MatrixXd worst_lux_per_level;
   Eigen::VectorXd max_lx;
   LampWorth worth{};  ///< decides which lamps dim for a limit
+  /// Light above `max_lx`, per row, that was already on when the rows were set: only now is it known to be perhaps too
+  /// much. It goes out evenly from `excess_since` on, so that nothing jumps. Empty: there is none.
+  Eigen::VectorXd excess_lx{};
+  Time excess_since{};
+  Duration excess_fades{};
 
   /// Lighting desks in control, one per part of the rig that follows one.
   std::vector<DeskBlend> desks;
@@ -96,8 +101,8 @@ struct OutputProgram {
   LampStarts lamp_starts;              ///< after power-up; empty = nothing is staged
   std::vector<std::uint8_t> parked{};  ///< per fixture, 1 = desks do not turn it; may be empty
 
-  /// Levels at `now`, per fixture. Never above max_level, and worst_lux_per_level · level never above max_lx
-  /// (scale_to_limits). Both limits apply to a desk's levels, too. Values that are missing or NaN count as 0. Times
+  /// Levels at `now`, per fixture. Never above max_level, and worst_lux_per_level · level never above max_lx with what
+  /// is left of excess_lx (scale_to_limits). Both limits apply to a desk's levels, too. Values that are missing or NaN count as 0. Times
   /// before `start` count as `start`. Allocates nothing.
   void levels_at(Time now, std::span<double> level) const;
   /// Target joints of heads at `now`, per fixture. Allocates nothing.
@@ -111,6 +116,8 @@ struct OutputProgram {
 
  private:
   void switch_off_partial(std::span<double> level) const;
+  /// Share of `excess_lx` that is still let out.
+  [[nodiscard]] double excess_share(Time now) const;
   void own_levels_at(Time now, std::span<double> level) const;
   void shared_levels_at(Time now, std::span<double> level) const;
 };

@@ -38,6 +38,9 @@ const char* name_of(Phase phase) {
 
 namespace {
 
+/// Light that only now is known to be perhaps too much goes out within this: fast for paper, slow for an eye.
+constexpr Duration kExcessFades = std::chrono::seconds(1);
+
 /// Per fixture, 1: its product has a bit for a burnt-out lamp.
 std::vector<std::uint8_t> fixtures_that_tell_of_lamps(const Rig& rig) {
   std::vector<std::uint8_t> tell(rig.fixtures.size(), 0);
@@ -105,7 +108,17 @@ std::vector<double> ShowController::State::present_levels(Time now, bool under_c
 
 void ShowController::State::fade(Time now, std::vector<double> from, std::vector<double> to, double seconds,
                                  FadeCurve curve) {
+  // What is lit now, under the limits so far.
+  const std::vector<double> lit =
+      program.revision == 0 || program.blackout ? std::vector<double>{} : present_levels(now);
   guard(now, from, to);
+  program.excess_lx.resize(0);
+  if (!lit.empty()) {
+    const Eigen::Map<const Eigen::VectorXd> level(lit.data(), static_cast<Eigen::Index>(lit.size()));
+    program.excess_lx = (program.worst_lux_per_level * level - program.max_lx).cwiseMax(0.0);
+    program.excess_since = now;
+    program.excess_fades = kExcessFades;
+  }
   program.from_level = std::move(from);
   program.to_level = std::move(to);
   program.start = std::max(now, arrive);
@@ -114,7 +127,7 @@ void ShowController::State::fade(Time now, std::vector<double> from, std::vector
   ++program.revision;
   guard_against_desks(now);
   readings.restart(program.start + program.duration + from_seconds(rig.control.settle_s));
-  drifted = 0;
+  progress.drifted = 0;
 }
 
 /// Sets the limit rows of the output. A row is one factor for all levels: its assumption for the dim end of a fade
@@ -200,11 +213,7 @@ void ShowController::State::take_look(Time now) {
 void ShowController::State::start_cue(Time now, std::vector<double> levels) {
   asked = levels;
   cue = std::move(levels);
-  round = 0;
-  converged = false;
-  aimed_lx.clear();
-  why.clear();
-  breaches.clear();
+  progress.begin();
   // The fade waits until everything is back. Before the first step no failure is known.
   const bool waits = phase == Phase::frozen || phase == Phase::safe_fading || phase == Phase::safe;
   if ((failing && waits) || waits_for_desks(now)) return;
@@ -234,18 +243,17 @@ void ShowController::State::start_cue(Time now, std::vector<double> levels) {
     take_look(now);
   }
   asked = with_hands(*cue);
-  ++facts;
+  solving.facts_changed();
   drop_solving();
   // Levels held by hand go out at once; the rest follows when it is solved around them.
-  if (unsolved && !beside) {
+  if (unsolved && !solving.has_runner()) {
     unsolved = false;
     Correction correction = estimator.correct(asked, now, true);
-    aimed_lx = std::move(correction.aimed_lx);
-    why = std::move(correction.why);
+    progress.take_aims(correction);
     asked = std::move(correction.level);
   }
   go_to_asked(now, std::move(present));
-  if (std::exchange(unsolved, false)) solve(now, Solving::For::hands);
+  if (std::exchange(unsolved, false)) solve(now, SolveBeside::For::hands);
 }
 
 void ShowController::State::go_to_asked(Time now, std::vector<double> present) {
@@ -262,7 +270,7 @@ void ShowController::State::freeze(Time now) {
   const std::vector<double> present = present_levels(now);
   program.lamp_starts.clear();
   fade(now, present, present, 0, FadeCurve::linear);
-  converged = false;
+  progress.converged = false;
   enter(Phase::frozen, now);
 }
 
@@ -272,8 +280,8 @@ void ShowController::State::fade_to_safe(Time now) {
   std::vector<double> present = present_levels(now);
   program.lamp_starts.clear();  // the safe look does not wait for stages
   fade(now, std::move(present), estimator.within_limits(safe_levels(), now), rig.safe.fade_s, rig.control.fade_curve);
-  converged = false;
-  breaches.clear();
+  progress.converged = false;
+  progress.breaches.clear();
   enter(Phase::safe_fading, now);
 }
 
@@ -290,7 +298,7 @@ void ShowController::State::look_at_failures(Time now) {
   for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) {
     if (health.meter_lost(i)) readings.disbelieve(i);
   }
-  converged = converged && all_metered_goals_arrived();
+  progress.converged = progress.converged && all_metered_goals_arrived();
   watch_losses(now);
 }
 
@@ -323,7 +331,7 @@ void ShowController::State::advance(Time now) {
         if (turns(f)) program.from_level[f] = program.to_level[f] = 0;
     return start_cue(now, *cue);
   }
-  if (shared) return;            // a desk's light says nothing about the plan's
+  if (sharing.shared()) return;  // a desk's light says nothing about the plan's
   if (program.blackout) return;  // nothing to measure in the dark; lifting it fades again
   switch (phase) {
     case Phase::fading:
@@ -340,7 +348,7 @@ void ShowController::State::advance(Time now) {
       for (std::size_t i = 0; i < rig.luxmeters.size(); ++i)
         any_living = any_living || (!health.meter_lost(i) && !in_doubt(i));
       if (!any_living) return enter(Phase::holding, now);  // no meter to go by: open loop
-      if (readings.sampled_at() == now) solve(now, Solving::For::round);
+      if (readings.sampled_at() == now) solve(now, SolveBeside::For::round);
       return;
     }
     default:
@@ -393,7 +401,7 @@ void ShowController::blackout(Time now, bool on) {
   if (state.program.blackout == on) return;
   state.program.blackout = on;
   ++state.program.revision;
-  state.converged = false;
+  state.progress.converged = false;
   if (on || state.phase == Phase::idle) return;
   const bool to_safe = state.phase == Phase::safe_fading || state.phase == Phase::safe;
   state.fade(now, std::vector<double>(state.rig.fixtures.size(), 0.0), state.program.to_level,
@@ -443,7 +451,7 @@ void ShowController::step(Time now) {
   state.remember_levels(now);
 }
 
-void ShowController::solve_beside(Beside beside) { state_->beside = std::move(beside); }
+void ShowController::solve_beside(Beside beside) { state_->solving.use(std::move(beside)); }
 
 std::vector<double> ShowController::safe_look(Time now) const {
   std::vector<double> level = state_->estimator.within_limits(state_->safe_levels(), now);

@@ -100,7 +100,7 @@ std::string ShowController::State::why_not(Time now, const ByHand& held) const {
   if (held.what == ByHand::What::goal) {
     const std::optional<double> max_lx = points_in_force[held.index].max_lx;
     if (max_lx && held.value > *max_lx) return fmt::format("its limit of {:g} lx wins", *max_lx);
-    return held.index < why.size() ? why[held.index] : std::string();
+    return held.index < progress.why.size() ? progress.why[held.index] : std::string();
   }
   if (lost[held.index]) return "it does not answer: it is held as it was, then goes to its safe level";
   if (bypassed.lamp(held.index)) return "it is bypassed";

@@ -26,7 +26,7 @@ void ShowController::State::bypass(Time now, std::span<const std::size_t> fixtur
   }
   if (lamps.empty() && meters.empty()) return;
   health.set_bypassed(bypassed.lamps(), bypassed.meters());
-  breaches.clear();
+  progress.breaches.clear();
   if (!lamps.empty()) return start_with_hands(now);  // the rest is solved without them
   tell_estimator();
   // Limits that relied on it hold by the model alone from here on.

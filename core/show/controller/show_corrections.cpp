@@ -23,9 +23,10 @@ constexpr double kSmallestChange = 1e-4;
 /// Learns from a sample of every living meter. Lost meters take part as soon as they have one, since a believable
 /// sample is how a meter that was not believed comes back.
 void ShowController::State::take_sample(Time now) {
-  if (program.blackout || shared || !program.done(now) || too_much_lost() || any_dimmed_for_a_zone(program, now))
+  if (program.blackout || sharing.shared() || !program.done(now) || too_much_lost() ||
+      any_dimmed_for_a_zone(program, now))
     return;  // not the light that was asked for
-  if (phase == Phase::measuring ? solving != nullptr : now - readings.sampled_at() < kSampleEvery) return;
+  if (phase == Phase::measuring ? solving.running() : now - readings.sampled_at() < kSampleEvery) return;
   std::vector<LuxReading> sample;
   for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) {
     if (in_doubt(i) || bypassed.meter(i)) continue;
@@ -55,65 +56,50 @@ void ShowController::State::take_sample(Time now) {
     if (!points_in_force[p].max_lx || !estimator.confirmed(p)) continue;
     const double worst_case_lx = estimator.max_lux_at_point(p, program.to_level, now);
     if (worst_case_lx <= *points_in_force[p].max_lx * (1 + kBreachSlack)) continue;
-    const auto known =
-        std::find_if(breaches.begin(), breaches.end(), [&](const LimitBreach& breach) { return breach.point == p; });
-    present.push_back({p, worst_case_lx, known == breaches.end() ? now : known->since});
+    const auto known = std::find_if(progress.breaches.begin(), progress.breaches.end(),
+                                    [&](const LimitBreach& breach) { return breach.point == p; });
+    present.push_back({p, worst_case_lx, known == progress.breaches.end() ? now : known->since});
   }
-  breaches = std::move(present);
+  progress.breaches = std::move(present);
 }
 
 /// Starts solving for the levels that readings and settings by hand require; take_solved() puts them to use.
-void ShowController::State::solve(Time now, Solving::For what) {
-  solving = std::make_shared<Solving>();
-  solving->what = what;
-  solving->facts = facts;
-  const bool for_hands = what == Solving::For::hands;
-  std::vector<double> levels = for_hands ? asked : with_hands(program.to_level);
-  if (!beside) {
-    solving->correction = estimator.correct(levels, now, for_hands);
-    solving->done = true;
-    return take_solved(now);
-  }
-  // With present knowledge: what is learned during the solve counts the next time.
-  beside([to = solving, known = std::make_shared<const GainEstimator>(estimator), levels = std::move(levels), now,
-          for_hands] {
-    to->correction = known->correct(levels, now, for_hands);
-    to->done = true;
-  });
+void ShowController::State::solve(Time now, SolveBeside::For what) {
+  solving.start(what, estimator, what == SolveBeside::For::hands ? asked : with_hands(program.to_level), now);
+  if (!solving.has_runner()) take_solved(now);
 }
 
 /// Drops a solve that is outdated. If it was for settings by hand, that is still to be solved.
 void ShowController::State::drop_solving() {
-  unsolved = unsolved || (solving && solving->what == Solving::For::hands);
-  solving.reset();
+  unsolved = unsolved || solving.what() == SolveBeside::For::hands;
+  solving.drop();
 }
 
 void ShowController::State::take_solved(Time now) {
-  if (!solving || !solving->done) return;
+  if (!solving.done()) return;
   const bool fades = phase == Phase::fading || phase == Phase::settling || phase == Phase::measuring ||
                      phase == Phase::correcting || phase == Phase::holding;
-  const bool for_hands = solving->what == Solving::For::hands;
+  const bool for_hands = solving.what() == SolveBeside::For::hands;
   // Lamps that come on by stages finish that first.
   if (for_hands && fades && !program.lamp_starts.empty() && !program.done(now)) return;
-  const std::shared_ptr<Solving> solved = std::exchange(solving, nullptr);
-  const bool holds = solved->facts == facts && cue && !program.blackout;
+  SolveBeside::Solved solved = solving.take();
+  const bool holds = solved.holds && cue && !program.blackout;
   if (for_hands) {
     if (!holds || !fades) {
       unsolved = true;  // with the next cue
       if (cue && fades && !program.blackout) {
         unsolved = false;
-        solve(now, Solving::For::hands);
+        solve(now, SolveBeside::For::hands);
       }
       return;
     }
-    asked = std::move(solved->correction.level);
-    aimed_lx = std::move(solved->correction.aimed_lx);
-    why = std::move(solved->correction.why);
+    asked = std::move(solved.correction.level);
+    progress.take_aims(solved.correction);
     return go_to_asked(now, present_levels(now, false));
   }
   if (!holds || (phase != Phase::measuring && phase != Phase::holding)) return;
-  if (solved->what == Solving::For::round) return correct_or_hold(now, std::move(solved->correction));
-  look_at_drift(now, std::move(solved->correction));
+  if (solved.what == SolveBeside::For::round) return correct_or_hold(now, std::move(solved.correction));
+  look_at_drift(now, std::move(solved.correction));
 }
 
 /// After a sample: another round if it would bring a metered goal nearer, or if a limit is in question.
@@ -123,12 +109,11 @@ void ShowController::State::correct_or_hold(Time now, Correction correction) {
     change = std::max(change, std::abs(correction.level[i] - program.to_level[i]));
   }
   const bool wanted = possible_gain(correction) > rig.control.tolerance;
-  const bool worth_it = change > kSmallestChange && (wanted || !breaches.empty());
-  const bool in_rounds = phase == Phase::measuring ? round < rig.control.rounds : true;
-  aimed_lx = std::move(correction.aimed_lx);
-  why = std::move(correction.why);
-  converged = all_metered_goals_arrived();
-  if (!worth_it || (!in_rounds && breaches.empty())) {
+  const bool worth_it = change > kSmallestChange && (wanted || !progress.breaches.empty());
+  const bool in_rounds = phase == Phase::measuring ? progress.round < rig.control.rounds : true;
+  progress.take_aims(correction);
+  progress.converged = all_metered_goals_arrived();
+  if (!worth_it || (!in_rounds && progress.breaches.empty())) {
     enter(Phase::holding, now);
     return;
   }
@@ -143,22 +128,22 @@ void ShowController::State::correct_or_hold(Time now, Correction correction) {
     if (!same || !lost.any()) asked[i] = correction.level[i];
   }
   if (hands.all().empty() && !bypassed.any_lamp()) hands.correct(asked);
-  ++round;
-  corrected_at = now;
+  ++progress.round;
+  progress.corrected_at = now;
   fade(now, present_levels(now), std::move(correction.level), rig.control.correction_fade_s, rig.control.fade_curve);
   enter(Phase::correcting, now);
 }
 
 void ShowController::State::watch_drift(Time now) {
   if (readings.sampled_at() != now) return;
-  converged = all_metered_goals_arrived();
-  if (solving) return;
-  solve(now, breaches.empty() ? Solving::For::drift : Solving::For::round);
+  progress.converged = all_metered_goals_arrived();
+  if (solving.running()) return;
+  solve(now, progress.breaches.empty() ? SolveBeside::For::drift : SolveBeside::For::round);
 }
 
 void ShowController::State::look_at_drift(Time now, Correction correction) {
-  drifted = possible_gain(correction) > rig.control.tolerance ? drifted + 1 : 0;
-  if (drifted >= kDriftSamples && now - corrected_at >= kDriftCorrectionEvery)
+  progress.drifted = possible_gain(correction) > rig.control.tolerance ? progress.drifted + 1 : 0;
+  if (progress.drifted >= kDriftSamples && now - progress.corrected_at >= kDriftCorrectionEvery)
     correct_or_hold(now, std::move(correction));
 }
 
@@ -170,7 +155,7 @@ void ShowController::State::doubt_the_past(Time now) {
   for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) {
     if (!health.meter_implausible(i) || !readings.changed(i)) continue;
     estimator.forget(i);
-    ++facts;
+    solving.facts_changed();
     scale.forget(i);
   }
 }

@@ -14,16 +14,12 @@ namespace {
 
 /// From the last blink back to the light before.
 constexpr Duration kIdentifyFade = std::chrono::milliseconds(500);
-/// Drivers report within 4 s of their start whether a desk is there. sACN takes 2.5 s, the longest silence of a source
-/// that is not lost, plus 1.5 s in which a newly heard source has no control yet. Art-Net takes 4 s, the slowest
-/// refresh. A bus that cannot report (not open yet) must not keep the rest of the rig dark for longer.
-constexpr Duration kListensAtMost = std::chrono::seconds(5);
 
 }  // namespace
 
 /// Sets limits for levels that were not computed, and which heads a desk cannot light while they turn.
 void ShowController::State::guard_against_desks(Time now) {
-  if (desks.empty()) return;
+  if (sharing.empty()) return;
   const bool limited = std::any_of(points_in_force.begin(), points_in_force.end(),
                                    [](const Point& point) { return point.max_lx.has_value(); });
   WorstCase worst = estimator.worst_of_any(now);
@@ -43,40 +39,9 @@ void ShowController::State::guard_against_desks(Time now) {
   for (std::size_t f = 0; f < rig.fixtures.size(); ++f) program.heads_guarded[f] = limited && rig.fixtures[f].moves;
 }
 
-void ShowController::State::put_desk(std::size_t index) {
-  program.desks[index] = desks[index].blend();
-  ++program.revision;
-}
-
-template <class Call>
-bool ShowController::State::with_present_light(Time now, Call call) {
-  const bool dark = program.blackout;
-  program.blackout = false;
-  std::vector<double> level(rig.fixtures.size());
-  std::vector<Joints> joints(rig.fixtures.size());
-  program.levels_at(now, level);
-  program.joints_at(now, joints);
-  program.blackout = dark;
-  return call(PresentLight{level, joints, program.joints});
-}
-
-/// A desk shares control, or the light is not ours at all.
-bool ShowController::State::desk_shares(Time now) const {
-  return program.desk_has_a_say(now) ||
-         std::any_of(program.desks.begin(), program.desks.end(), [](const DeskBlend& desk) { return desk.silent; });
-}
-
-bool ShowController::State::listens_in_silence() const {
-  return std::any_of(desks.begin(), desks.end(), [](const DeskFollower& desk) {
-    return desk.phase() == DeskPhase::listening && desk.blend().silent;
-  });
-}
-
 /// A first look that came on while listening would skip its fade and stages when no desk is heard.
 bool ShowController::State::waits_for_desks(Time now) {
-  if (phase != Phase::idle || !in_force.empty() || !listens_in_silence()) return false;
-  if (!listens_until) listens_until = now + kListensAtMost;
-  return now < *listens_until;
+  return phase == Phase::idle && in_force.empty() && sharing.listens_still(now);
 }
 
 void ShowController::State::begin_after_listening(Time now) {
@@ -89,17 +54,10 @@ void ShowController::State::begin_after_listening(Time now) {
 }
 
 void ShowController::State::step_desks(Time now) {
-  for (const Identification& one : identified) {
-    if (!one.pattern.over(now) || desks[one.desk].phase() != DeskPhase::own)
-      hear_desk(now, one.desk, one.pattern.frame_at(now));
-  }
-  for (std::size_t d = 0; d < desks.size(); ++d) {
-    if (desks[d].step(now)) put_desk(d);
-  }
-  const bool was_shared = std::exchange(shared, desk_shares(now));
-  if (shared) converged = false;
+  const SharedControl::Change shared = sharing.step(program, now);
+  if (shared.is) progress.converged = false;
   // Readings under a desk's control are not believed, and limits are still being released.
-  if (was_shared && !shared) {
+  if (shared.was && !shared.is) {
     readings.restart(std::max(now + program.limits_released, program.start + program.duration) +
                      from_seconds(rig.control.settle_s));
   }
@@ -122,22 +80,6 @@ DeskFollowerSettings ShowController::State::desk_settings(const DeskRules& rules
   return settings;
 }
 
-std::size_t ShowController::State::add_desk(DeskFollowerSettings settings, const std::string& name) {
-  desks.emplace_back(std::move(settings));
-  desk_names.push_back(name);
-  program.desks.emplace_back();
-  guard_against_desks(last);
-  put_desk(desks.size() - 1);
-  return desks.size() - 1;
-}
-
-void ShowController::State::hear_desk(Time now, std::size_t index, const DeskFrame& frame) {
-  LUXRIG_CHECK(index < desks.size(), "desk {} of {}", index, desks.size());
-  const bool changed =
-      with_present_light(now, [&](const PresentLight& present) { return desks[index].hear(now, frame, present); });
-  if (changed) put_desk(index);
-}
-
 Result<void> ShowController::State::identify(Time now, std::size_t fixture, Duration how_long) {
   LUXRIG_CHECK(fixture < rig.fixtures.size(), "fixture {} of {}", fixture, rig.fixtures.size());
   if (how_long <= Duration::zero()) return refusal("for no time at all nobody would see it: give a time above 0");
@@ -150,12 +92,7 @@ Result<void> ShowController::State::identify(Time now, std::size_t fixture, Dura
   const KeepOutZones& zones = head_guard.zones();
   if (const auto zone = zones.met(fixture, looks[fixture]))
     return refusal(fmt::format("it looks into keep-out zone \"{}\": turn it elsewhere first", zones.name(*zone)));
-  auto one = std::find_if(identified.begin(), identified.end(),
-                          [&](const Identification& other) { return other.pattern.fixtures() == fixtures; });
-  if (one != identified.end() && !one->pattern.over(now)) {
-    one->pattern.prolong(now + how_long);
-    return {};
-  }
+  if (sharing.prolong(now, fixtures, now + how_long)) return {};
   DeskFollowerSettings settings = desk_settings({DeskMode::takeover, HandBack::at_once}, fixtures);
   settings.fade = std::min(settings.fade, kIdentifyFade);
   std::vector<double> level(rig.fixtures.size());
@@ -166,23 +103,21 @@ Result<void> ShowController::State::identify(Time now, std::size_t fixture, Dura
   IdentifyPattern nods(rig, fixtures, level, joints, settings.desk_may_turn, now, how_long);
   settings.desk_may_turn = settings.desk_may_turn && !zones.may_meet(fixture, nods.nodding());
   IdentifyPattern pattern(rig, fixtures, level, joints, settings.desk_may_turn, now, how_long);
-  if (one == identified.end()) {
-    const std::size_t desk = add_desk(std::move(settings), "");
-    one = identified.insert(one, {desk, std::move(pattern)});
-  } else {
-    one->pattern = std::move(pattern);
-  }
-  hear_desk(now, one->desk, one->pattern.frame_at(now));
+  sharing.identify(program, now, std::move(settings), std::move(pattern));
+  guard_against_desks(now);
   return {};
 }
 
 std::size_t ShowController::add_desk(const DeskRules& rules, const DeskPart& part) {
-  return state_->add_desk(state_->desk_settings(rules, part.fixtures), part.name);
+  State& state = *state_;
+  const std::size_t desk = state.sharing.add(state.program, state.desk_settings(rules, part.fixtures), part.name);
+  state.guard_against_desks(state.last);
+  return desk;
 }
 
 void ShowController::desk(Time now, std::size_t index, const DeskFrame& frame) {
   now = state_->at_least_last(now);
-  state_->hear_desk(now, index, frame);
+  state_->sharing.hear(state_->program, now, index, frame);
 }
 
 Result<void> ShowController::identify(Time now, std::size_t fixture, Duration how_long) {
@@ -191,13 +126,8 @@ Result<void> ShowController::identify(Time now, std::size_t fixture, Duration ho
 }
 
 void ShowController::hand_back(Time now) {
-  State& state = *state_;
-  now = state.at_least_last(now);
-  for (std::size_t d = 0; d < state.desks.size(); ++d) {
-    const bool changed = state.with_present_light(
-        now, [&](const PresentLight& present) { return state.desks[d].hand_back(now, present); });
-    if (changed) state.put_desk(d);
-  }
+  now = state_->at_least_last(now);
+  state_->sharing.hand_back(state_->program, now);
 }
 
 }  // namespace luxrig

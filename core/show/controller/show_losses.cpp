@@ -93,7 +93,7 @@ void ShowController::State::tell_lost_lamps() {
     lamps[f] = GainEstimator::Lost{lost[f]->most, unknown ? 1.0 : lost[f]->most};
   }
   estimator.set_lost(std::move(lamps), watched);
-  ++facts;
+  solving.facts_changed();
 }
 
 bool ShowController::State::in_doubt(std::size_t luxmeter) const {

@@ -17,9 +17,7 @@ void ShowController::State::exchange_rig(Time now, const Rig& other, const Light
   rig = other;
   points_in_force = rig.points;
   take_points(hung_look(rig));
-  aimed_lx.clear();
-  why.clear();
-  breaches.clear();
+  progress.forget_aims();
   awaited.reset();
   drop_solving();
   parking.clear();

@@ -2,20 +2,19 @@
 /// State of a ShowController. Private to show_controller.cpp and its neighbours show_….cpp (behaviour), and
 /// show_status.cpp (reports).
 
-#include <atomic>
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/estimation/gain_estimator.h"
 #include "core/show/bypass_list.h"
-#include "core/show/desk_follower.h"
+#include "core/show/controller/correction_progress.h"
+#include "core/show/controller/shared_control.h"
+#include "core/show/controller/solve_beside.h"
 #include "core/show/hand_settings.h"
 #include "core/show/head_guard.h"
 #include "core/show/health_watch.h"
-#include "core/show/identify.h"
 #include "core/show/lost_fixtures.h"
 #include "core/show/meter_readings.h"
 #include "core/show/scale_watch.h"
@@ -30,32 +29,11 @@ inline constexpr double kArrivedTolerance = 0.03;
 /// Half of that may be used up before a reading counts; else noise alone would start one correction after another.
 inline constexpr double kBreachSlack = 0.005;
 
-/// A point above its limit, by its meter; kept while it lasts.
-struct LimitBreach {
-  std::size_t point = 0;
-  double worst_case_lx = 0;
-  Time since{};
-};
-
 /// One late answer is no failure: a device that is reported as faulted is lost after this. Limits are checked first
 /// (limits_bear_waiting).
 inline constexpr Duration kPatience = std::chrono::milliseconds(1200);
 /// From the last level that a lamp took until the show knows of its loss: the driver's detection, then kPatience.
 inline constexpr Duration kNoticedWithin = std::chrono::milliseconds(3200);
-
-/// A housing that blinks or has blinked; it keeps its place among the desks.
-struct Identification {
-  std::size_t desk = 0;
-  IdentifyPattern pattern;
-};
-
-/// A correction that is solved beside the loop.
-struct Solving {
-  enum class For { round, drift, hands } what = For::round;
-  std::uint64_t facts = 0;  ///< State::facts when it was asked for
-  std::atomic<bool> done{false};
-  Correction correction{};
-};
 
 struct ShowController::State {
   State(const Rig& rig, const LightModel& model, std::span<const Joints> joints);
@@ -74,11 +52,7 @@ struct ShowController::State {
   std::vector<std::uint8_t> powerless;      ///< per fixture, 1: its lamp is lost, and starts as after a power cut
   bool power_came = false;                  ///< light has been asked for once
 
-  std::vector<DeskFollower> desks;      ///< one for each of program.desks
-  std::vector<std::string> desk_names;  ///< of the rig's desks; empty for those that identify fixtures
-  std::optional<Time> listens_until{};  ///< a first look waits until then for desks to be heard
-  std::vector<Identification> identified;
-  bool shared = false;  ///< a desk shared control of the light at the last step
+  SharedControl sharing;
 
   Phase phase = Phase::idle;
   Time phase_since{};
@@ -100,13 +74,8 @@ struct ShowController::State {
   bool turned = false;             ///< heads have got their first aim
   std::vector<double> in_force;    ///< levels that were on before our look, until it is on; else empty
   bool afresh = false;             ///< a person applied a plan; not all meters have been believed since
-  int round = 0;
-  bool converged = false;
-  Time corrected_at{};           ///< when the last correction was decided
-  int drifted = 0;               ///< samples in a row, while holding, that ask for a correction
-  std::vector<double> aimed_lx;  ///< per point: reachable by the last correction; empty before
-  std::vector<std::string> why;  ///< per point: why its goal is not met; empty before the first
-  std::vector<LimitBreach> breaches;
+  CorrectionProgress progress;
+  SolveBeside solving;
 
   // Set by hand (show_by_hand.cpp).
   HandSettings hands;
@@ -136,10 +105,6 @@ struct ShowController::State {
   // A rig file read again (show_reload.cpp).
   void exchange_rig(Time now, const Rig& other, const LightModel& model, bool same_light);
 
-  ShowController::Beside beside;     ///< may be empty
-  std::shared_ptr<Solving> solving;  ///< asked for, and not taken up yet
-  std::uint64_t facts = 0;           ///< counts changes that outdate a correction asked for before
-
   // Behaviour (show_controller.cpp).
   [[nodiscard]] Time at_least_last(Time now);
   void enter(Phase next, Time now);
@@ -155,7 +120,7 @@ struct ShowController::State {
   void resume(Time now);
   void fade_to_safe(Time now);
   void take_sample(Time now);
-  void solve(Time now, Solving::For what);
+  void solve(Time now, SolveBeside::For what);
   void take_solved(Time now);
   void drop_solving();
   void correct_or_hold(Time now, Correction correction);
@@ -167,19 +132,11 @@ struct ShowController::State {
 
   // Lighting desks (show_desks.cpp).
   void guard_against_desks(Time now);
-  void put_desk(std::size_t index);
-  /// Calls back with the light that goes out now, as without a blackout: that does not concern desks.
-  template <class Call>
-  bool with_present_light(Time now, Call call);
-  [[nodiscard]] bool desk_shares(Time now) const;
-  [[nodiscard]] bool listens_in_silence() const;  ///< not known yet whether a desk has our light
   [[nodiscard]] bool waits_for_desks(Time now);
   void begin_after_listening(Time now);
   void step_desks(Time now);
-  std::size_t add_desk(DeskFollowerSettings settings, const std::string& name);
   [[nodiscard]] DeskFollowerSettings desk_settings(const DeskRules& rules,
                                                    const std::vector<std::size_t>& fixtures) const;
-  void hear_desk(Time now, std::size_t index, const DeskFrame& frame);
   Result<void> identify(Time now, std::size_t fixture, Duration how_long);
 
   // Parking (show_park.cpp).
@@ -234,7 +191,6 @@ struct ShowController::State {
   void judge_limit(std::size_t point, std::span<const double> level, Time now, PointStatus& status) const;
   void remember_levels(Time now);
   [[nodiscard]] std::string detail(Time now, const VerdictCounts& goals) const;
-  [[nodiscard]] std::string who_shares(Time now) const;
   [[nodiscard]] ShowStatus status(Time now) const;
 };
 

@@ -44,11 +44,12 @@ bool ShowController::State::arrived(std::size_t point, double lux) const {
   const double goal_lx = *points_in_force[point].goal_lx;
   const double near_lx = std::max(kArrivedTolerance, rig.control.tolerance) * goal_lx;
   if (std::abs(lux - goal_lx) <= near_lx) return true;
-  return point < why.size() && !why[point].empty() && std::abs(lux - aimed_lx[point]) <= near_lx;
+  return point < progress.why.size() && !progress.why[point].empty() &&
+         std::abs(lux - progress.aimed_lx[point]) <= near_lx;
 }
 
 bool ShowController::State::all_metered_goals_arrived() const {
-  if (!breaches.empty()) return false;
+  if (!progress.breaches.empty()) return false;
   bool any = false;
   for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) {
     const std::optional<std::size_t> point = rig.luxmeters[i].point;
@@ -86,7 +87,7 @@ std::string ShowController::State::detail(Time now, const VerdictCounts& goals) 
       text = "measuring";
       break;
     case Phase::correcting:
-      text = fmt::format("correcting, round {}", round);
+      text = fmt::format("correcting, round {}", progress.round);
       break;
     case Phase::holding: {
       text = text_of(goals);
@@ -106,27 +107,16 @@ std::string ShowController::State::detail(Time now, const VerdictCounts& goals) 
       text += asked_safe ? ", as asked" : failing ? ": " + failure : "; everything is back, going on in a moment";
       break;
   }
-  if (shared) text = who_shares(now) + "; the plan: " + text;
+  if (sharing.shared()) text = sharing.who(rig, program, now) + "; the plan: " + text;
   return program.blackout ? "blackout (" + text + ")" : text;
-}
-
-std::string ShowController::State::who_shares(Time now) const {
-  std::string blinking;
-  for (const Identification& one : identified) {
-    if (one.pattern.over(now)) continue;
-    blinking += (blinking.empty() ? "" : ", ") + rig.fixtures[one.pattern.fixtures().front()].name;
-  }
-  if (!blinking.empty()) return blinking + " shows which one it is";
-  return program.desk_has_a_say(now) || !listens_in_silence() ? "a desk has a say in the light"
-                                                              : "listening for a desk";
 }
 
 ShowStatus ShowController::State::status(Time now) const {
   ShowStatus status;
   status.phase = phase;
   status.phase_since = phase_since;
-  status.round = round;
-  status.converged = converged && !program.blackout;
+  status.round = progress.round;
+  status.converged = progress.converged && !program.blackout;
   status.blackout = program.blackout;
   status.plan_waits = awaited.has_value();
 
@@ -138,9 +128,6 @@ ShowStatus ShowController::State::status(Time now) const {
     status.fixtures.push_back({joints[i], as_planned ? planned.aim_world_m[i] : std::nullopt, level[i],
                                drive_from_level(rig.fixtures[i].dimmer_curve, level[i]), program.to_level[i],
                                !health.lamp_silent(i), estimator.gain(i), estimator.gain_standard_error(i)});
-  }
-  for (const Identification& one : identified) {
-    for (const std::size_t f : one.pattern.fixtures()) status.fixtures[f].identified = !one.pattern.over(now);
   }
   for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
     status.fixtures[f].parked = parked(f) || (!parking.empty() && parking[f] != 0);
@@ -159,7 +146,7 @@ ShowStatus ShowController::State::status(Time now) const {
   status.detail = detail(now, status.goals);
   status.luxmeters = readings.believed();
   status.alarms = health.alarms();
-  for (const LimitBreach& breach : breaches) {
+  for (const LimitBreach& breach : progress.breaches) {
     const Point& point = points_in_force[breach.point];
     status.alarms.push_back(
         {true, rig.luxmeters[*meter_at(breach.point)].name,
@@ -173,26 +160,8 @@ ShowStatus ShowController::State::status(Time now) const {
   tell_losses(status);
   tell_bypassed(status);
   scale.tell(status, readings.measured());
-  head_guard.tell(status, rig, program, shared);
-  for (std::size_t d = 0; d < desks.size(); ++d) {
-    if (desk_names[d].empty()) continue;
-    const DeskFollower& desk = desks[d];
-    const bool there = desk.presence() == DeskPresence::present;
-    status.desks.push_back(
-        {desk_names[d], desk.mode(), desk.phase(), desk.since(), desk.source(), there, desk.blend().silent});
-    if (desk.phase() == DeskPhase::own && !there && !desk.source().empty()) {
-      status.alarms.push_back(
-          {false, desk_names[d],
-           fmt::format("desk \"{}\" is lost: {} is Luxrig's again; look after the desk or its cable", desk.source(),
-                       desk_names[d]),
-           desk.since()});
-    } else if (desk.phase() == DeskPhase::waiting) {
-      status.alarms.push_back(
-          {false, desk_names[d],
-           fmt::format("desk \"{}\" is back and waits to get {}: luxrig hand-back", desk.source(), desk_names[d]),
-           desk.since()});
-    }
-  }
+  head_guard.tell(status, rig, program, sharing.shared());
+  sharing.tell(status, now);
   return status;
 }
 

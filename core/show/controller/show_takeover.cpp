@@ -26,14 +26,7 @@ void ShowController::go_on_from(Time now, const LightInForce& light) {
     level[f] = safe[f] = 0;
   }
   state.turned = all_known;
-  for (std::size_t d = 0; d < state.desks.size(); ++d) {
-    const std::vector<std::size_t>& fixtures = state.desks[d].blend().fixtures;
-    const bool silent = std::any_of(fixtures.begin(), fixtures.end(),
-                                    [&](std::size_t f) { return f < light.silent.size() && light.silent[f] != 0; });
-    if (silent) continue;  // a desk may drive them: listen first, as always
-    state.desks[d].have_light(now);
-    state.put_desk(d);
-  }
+  state.sharing.have_light(state.program, now, light.silent);
   state.in_force = level;
   state.fade(now + from_seconds(light.hold_s), std::move(level), std::move(safe), light.fade_s,
              state.rig.control.fade_curve);

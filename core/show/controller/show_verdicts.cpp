@@ -125,7 +125,7 @@ PointStatus ShowController::State::point_status(std::size_t p, std::span<const d
       status.measured_at = reading->taken;
     }
   }
-  if (p < why.size()) status.why = why[p];
+  if (p < progress.why.size()) status.why = progress.why[p];
   if (status.measured_lx) {
     const Luxmeter& meter = rig.luxmeters[*meter_at(p)];
     status.light = estimate_of_reading(*status.measured_lx, GainEstimator::kRepeatability, meter.tolerance,
@@ -205,9 +205,9 @@ void ShowController::State::judge_limit(std::size_t p, std::span<const double> l
         fmt::format("luxmeter \"{}\" read {:.1f} lx last, over the limit of {:g} lx, and is lost or not believed; "
                     "measure by hand",
                     rig.luxmeters[*meter].name, heard->lux, max_lx));
-  const auto breach =
-      std::find_if(breaches.begin(), breaches.end(), [&](const LimitBreach& one) { return one.point == p; });
-  if (breach != breaches.end())
+  const auto breach = std::find_if(progress.breaches.begin(), progress.breaches.end(),
+                                   [&](const LimitBreach& one) { return one.point == p; });
+  if (breach != progress.breaches.end())
     return say(LimitVerdict::unknown,
                fmt::format("with its luxmeter's tolerance it may have {:.1f} lx, the limit is {:g} lx; look for light "
                            "that is not the rig's",

@@ -179,6 +179,25 @@ TEST(OutputProgram, DimsForALimitMostlyTheLampsThatLightThePoint) {
   EXPECT_EQ(level[2], 0.6);
 }
 
+TEST(OutputProgram, LightThatIsTooMuchOnlyNowGoesOutEvenly) {
+  OutputProgram program;
+  program.from_level = program.to_level = {0.8};
+  program.max_level = {1};
+  program.worst_lux_per_level = Eigen::MatrixXd{{100}};
+  program.max_lx = Eigen::VectorXd::Constant(1, 50);
+  program.excess_lx = Eigen::VectorXd::Constant(1, 30);  // 80 lx were on
+  program.excess_since = at(2);
+  program.excess_fades = std::chrono::seconds(1);
+  EXPECT_NEAR(levels(program, at(1))[0], 0.8, 1e-9);
+  EXPECT_NEAR(levels(program, at(2))[0], 0.8, 1e-9);
+  EXPECT_NEAR(levels(program, at(2.25))[0], 0.725, 1e-9);
+  EXPECT_NEAR(levels(program, at(2.5))[0], 0.65, 1e-9);
+  EXPECT_NEAR(levels(program, at(3))[0], 0.5, 1e-9);
+  EXPECT_NEAR(levels(program, at(9))[0], 0.5, 1e-9);
+  program.to_level = {1};  // what was not on before is not let through
+  EXPECT_NEAR(levels(program, at(2))[0], 0.8, 1e-9);
+}
+
 TEST(OutputProgram, DimsForALimitTheLampsThatOtherGoalsNeedLess) {
   OutputProgram program;
   program.from_level = program.to_level = {0.5, 0.5};
