@@ -15,6 +15,15 @@
 #include "tools/process/clock.h"
 
 namespace luxrig {
+
+struct PublishedStatus {
+  std::shared_ptr<const Session> session;
+  ShowStatus show;
+  std::vector<Health> devices;
+  OutputFigures output;
+  Time at{};
+};
+
 namespace {
 
 constexpr Duration kPublishPeriod = std::chrono::milliseconds(100);
@@ -300,9 +309,15 @@ std::string Daemon::universes_json() {
 
 HttpHandlers Daemon::handlers() {
   HttpHandlers handlers;
-  handlers.status = [this] {
-    const std::lock_guard lock(mutex_);
-    return status_json_;
+  handlers.status = [this]() -> std::string {
+    std::shared_ptr<const PublishedStatus> last;
+    {
+      const std::lock_guard lock(mutex_);
+      last = published_;
+    }
+    if (!last) return "{}";
+    return status_json(
+        {last->session->rig, last->show, last->devices, last->output, options_.simulated, started_, last->at});
   };
   handlers.universes = [this] { return universes_json(); };
   handlers.room_json = [this] {
@@ -393,9 +408,9 @@ void Daemon::publish(Time at) {
                                           name, to_seconds(spell->most)),
                               spell->since});
   }
-  std::string text = status_json({session_->rig, status_, devices_, output, options_.simulated, started_, at});
+  auto published = std::make_shared<const PublishedStatus>(PublishedStatus{session_, status_, devices_, output, at});
   const std::lock_guard lock(mutex_);
-  status_json_ = std::move(text);
+  published_ = std::move(published);
 }
 
 void Daemon::go_safe() { controller_.go_safe(now()); }

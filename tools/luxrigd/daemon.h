@@ -26,6 +26,9 @@
 
 namespace luxrig {
 
+/// The state of the rig as clients get it. Its JSON is made where it is asked for: the control loop has no time for it.
+struct PublishedStatus;
+
 /// Outcome of taking up the state that the last daemon left.
 struct Resumed {
   bool plan = false;               ///< its plan is in force again
@@ -187,7 +190,7 @@ class Daemon {
   std::shared_ptr<RigFileWatch> rig_file_watch_;
   std::optional<Time> rig_file_changed_at_, unsaved_since_;
   RoomView room_;
-  std::string status_json_ = "{}";
+  std::shared_ptr<const PublishedStatus> published_;  ///< null before the first tick
   std::deque<Command> commands_;
 
   std::jthread drawing_, contacts_;  ///< last: they use the members above
