@@ -1,5 +1,6 @@
 // World::make from a rig alone: its scene, true poses, and their light.
-#include <fmt/format.h>
+#include <algorithm>
+#include <utility>
 
 #include "core/scene/ray_scene.h"
 #include "core/tasks/rig_transport.h"
@@ -14,6 +15,7 @@ namespace {
 constexpr int kSpreadAims = 32;  // per moving head; see head_light.h
 // Indirect light at these aims is a small part of the whole, and is interpolated anyway.
 constexpr double kSpreadErrorFactor = 3;
+constexpr double kDirectError = 1e-3;  // of a WorldMaker's direct light
 
 // Progress of one part of the work, within the whole.
 Watch part_of(const Watch& watch, double from, double to) {
@@ -32,85 +34,171 @@ std::vector<Joints> aims_of(const Fixture& fixture) {
   return aims;
 }
 
-Result<std::unique_ptr<const HeadLight>> light_of_heads(const Rig& rig, const std::vector<FixtureTruth>& truths,
-                                                        const RayScene& scene, const std::vector<Receiver>& receivers,
-                                                        const TransportMatrix& nominal,
-                                                        const EvaluateOptions& options) {
-  std::vector<HeadSamples> heads;
+/// Indirect light of the heads at their spread aims: receivers × aims, head by head.
+struct SpreadLight {
+  std::vector<std::size_t> heads;                       ///< fixtures
+  std::vector<std::vector<Vec3>> aims_mount;            ///< per head
+  std::vector<Eigen::MatrixXd> indirect_lux_per_level;  ///< per head
+};
+
+Emitter emitter_at(const Rig& rig, const Fixture& fixture, const Pose& world_from_mount, const Joints& joints) {
+  return emitter_of(rig.luminaires[fixture.luminaire], world_from_lamp(world_from_mount, joints, fixture.roll_rad),
+                    fixture.joints.beam_rad);
+}
+
+/// Of heads with these mounts.
+Result<SpreadLight> spread_light(const Rig& rig, const std::vector<Pose>& world_from_mount, const RayScene& scene,
+                                 const std::vector<Receiver>& receivers, const TransportMatrix& nominal,
+                                 const EvaluateOptions& options) {
+  SpreadLight light;
   std::vector<Emitter> emitters;  // each head at its spread aims, head by head
   for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
     const Fixture& fixture = rig.fixtures[f];
     if (!fixture.moves) continue;
-    HeadSamples head;
-    head.fixture = f;
-    head.world_from_mount = truths[f].world_from_mount;
-    head.roll_rad = fixture.roll_rad;
-    head.luminaire = rig.luminaires[fixture.luminaire];
-    const auto emitter_at = [&](const Joints& joints) {
-      return emitter_of(head.luminaire, world_from_lamp(head.world_from_mount, joints, head.roll_rad),
-                        fixture.joints.beam_rad);
-    };
-    head.sees = seen_shares(scene, receivers, emitter_at(fixture.joints));
+    light.heads.push_back(f);
+    light.aims_mount.emplace_back();
     const std::vector<Joints> aims = aims_of(fixture);
     for (std::size_t a = 0; a < aims.size(); ++a) {
-      head.aims_mount.push_back(beam_mount(aims[a]));
-      if (a > 0) emitters.push_back(emitter_at(aims[a]));
+      light.aims_mount.back().push_back(beam_mount(aims[a]));
+      if (a > 0) emitters.push_back(emitter_at(rig, fixture, world_from_mount[f], aims[a]));
     }
-    heads.push_back(std::move(head));
   }
-  if (heads.empty()) return std::unique_ptr<const HeadLight>();
-
+  if (light.heads.empty()) return light;
   const auto spread = make_path_evaluator(scene)->evaluate(receivers, emitters, options);
   if (!spread) return tl::unexpected(spread.error());
   const Eigen::MatrixXd spread_indirect = spread->lux_per_level - spread->direct_lux_per_level;
   const Eigen::MatrixXd nominal_indirect = nominal.lux_per_level - nominal.direct_lux_per_level;
   Eigen::Index next = 0;
-  for (HeadSamples& head : heads) {
-    const auto count = static_cast<Eigen::Index>(head.aims_mount.size());
-    head.indirect_lux_per_level.resize(static_cast<Eigen::Index>(receivers.size()), count);
-    head.indirect_lux_per_level.col(0) = nominal_indirect.col(static_cast<Eigen::Index>(head.fixture));
-    head.indirect_lux_per_level.rightCols(count - 1) = spread_indirect.middleCols(next, count - 1);
+  for (std::size_t h = 0; h < light.heads.size(); ++h) {
+    const auto count = static_cast<Eigen::Index>(light.aims_mount[h].size());
+    Eigen::MatrixXd indirect(static_cast<Eigen::Index>(receivers.size()), count);
+    indirect.col(0) = nominal_indirect.col(static_cast<Eigen::Index>(light.heads[h]));
+    indirect.rightCols(count - 1) = spread_indirect.middleCols(next, count - 1);
     // Rounding of total - direct must not make light negative.
-    head.indirect_lux_per_level = head.indirect_lux_per_level.cwiseMax(0.0);
+    light.indirect_lux_per_level.emplace_back(indirect.cwiseMax(0.0));
     next += count - 1;
   }
-  return make_head_light(receivers, std::move(heads));
+  return light;
+}
+
+std::unique_ptr<const HeadLight> light_of_heads(const Rig& rig, const std::vector<Pose>& world_from_mount,
+                                                const RayScene& scene, const std::vector<Receiver>& receivers,
+                                                const SpreadLight& spread) {
+  std::vector<HeadSamples> heads;
+  for (std::size_t h = 0; h < spread.heads.size(); ++h) {
+    const std::size_t f = spread.heads[h];
+    const Fixture& fixture = rig.fixtures[f];
+    HeadSamples head;
+    head.fixture = f;
+    head.world_from_mount = world_from_mount[f];
+    head.roll_rad = fixture.roll_rad;
+    head.luminaire = rig.luminaires[fixture.luminaire];
+    head.sees = seen_shares(scene, receivers, emitter_at(rig, fixture, world_from_mount[f], fixture.joints));
+    head.aims_mount = spread.aims_mount[h];
+    head.indirect_lux_per_level = spread.indirect_lux_per_level[h];
+    heads.push_back(std::move(head));
+  }
+  return heads.empty() ? nullptr : make_head_light(receivers, std::move(heads));
+}
+
+std::vector<Pose> mounts_of(const Rig& rig) {
+  std::vector<Pose> mounts;
+  for (const Fixture& fixture : rig.fixtures) mounts.push_back(fixture.world_from_mount);
+  return mounts;
+}
+
+/// The rig with the poses of its truth, and the file's joints.
+Rig with_true_poses(Rig rig, const std::vector<FixtureTruth>& truths) {
+  for (std::size_t f = 0; f < truths.size(); ++f) rig.fixtures[f].world_from_mount = truths[f].world_from_mount;
+  return rig;
+}
+
+Result<Scene> scene_of(const Rig& rig) {
+  auto built = build_scene(rig);
+  if (built) return std::move(*built);
+  return tl::unexpected(Fault{Cause::invalid, "", built.error().empty() ? "scene" : built.error().front().text(), {}});
+}
+
+/// All light of the rig's emitters, and the heads' at their spread aims.
+struct PathLight {
+  TransportMatrix transport;
+  SpreadLight spread;
+};
+
+Result<PathLight> path_light(const Rig& rig, const RayScene& scene, const std::vector<Receiver>& receivers,
+                             double max_error, std::uint64_t seed, const Watch& watch) {
+  const bool any_moves =
+      std::any_of(rig.fixtures.begin(), rig.fixtures.end(), [](const Fixture& fixture) { return fixture.moves; });
+  EvaluateOptions options;
+  options.wanted_relative_error = max_error;
+  set_error_floor(rig, options);
+  options.seed = seed;
+  options.watch = part_of(watch, 0, any_moves ? 0.5 : 1);
+  auto transport = make_path_evaluator(scene)->evaluate(receivers, all_emitters_of(rig), options);
+  if (!transport) return tl::unexpected(transport.error());
+  options.wanted_relative_error = max_error * kSpreadErrorFactor;
+  options.watch = part_of(watch, 0.5, 1);
+  auto spread = spread_light(rig, mounts_of(rig), scene, receivers, *transport, options);
+  if (!spread) return tl::unexpected(spread.error());
+  return PathLight{std::move(*transport), std::move(*spread)};
 }
 
 }  // namespace
 
 Result<std::unique_ptr<World>> World::make(const Rig& rig, const Deviations& deviations, double max_error,
                                            const Watch& watch) {
-  const auto built = build_scene(rig);
-  if (!built) {
-    return tl::unexpected(
-        Fault{Cause::invalid, "", built.error().empty() ? "scene" : built.error().front().text(), {}});
-  }
+  const auto built = scene_of(rig);
+  if (!built) return tl::unexpected(built.error());
   const RayScene scene(*built);
-  const std::vector<FixtureTruth> truths = draw_fixtures(rig, deviations);
-  Rig true_rig = rig;  // true poses, with the file's joints
-  for (std::size_t f = 0; f < truths.size(); ++f) {
-    true_rig.fixtures[f].world_from_mount = truths[f].world_from_mount;
-  }
+  const Rig true_rig = with_true_poses(rig, draw_fixtures(rig, deviations));
   const std::vector<Receiver> receivers = receivers_of(true_rig);
-
-  bool any_moves = false;
-  for (const Fixture& fixture : rig.fixtures) any_moves = any_moves || fixture.moves;
-  EvaluateOptions options;
-  options.wanted_relative_error = max_error;
-  set_error_floor(rig, options);
-  options.seed = deviations.seed;
-  options.watch = part_of(watch, 0, any_moves ? 0.5 : 1);
-  const auto transport = make_path_evaluator(scene)->evaluate(receivers, all_emitters_of(true_rig), options);
-  if (!transport) return tl::unexpected(transport.error());
-
-  options.wanted_relative_error = max_error * kSpreadErrorFactor;
-  options.watch = part_of(watch, 0.5, 1);
-  auto heads = light_of_heads(rig, truths, scene, receivers, *transport, options);
-  if (!heads) return tl::unexpected(heads.error());
+  const auto light = path_light(true_rig, scene, receivers, max_error, deviations.seed, watch);
+  if (!light) return tl::unexpected(light.error());
   const auto fixtures = static_cast<Eigen::Index>(rig.fixtures.size());
-  return make(rig, deviations, transport->lux_per_level.leftCols(fixtures), std::move(*heads),
-              daylight_lux(true_rig, *transport));
+  return make(rig, deviations, light->transport.lux_per_level.leftCols(fixtures),
+              light_of_heads(rig, mounts_of(true_rig), scene, receivers, light->spread),
+              daylight_lux(true_rig, light->transport));
+}
+
+struct WorldMaker::State {
+  Rig rig;
+  Scene built;
+  RayScene scene;
+  std::vector<Receiver> receivers;
+  PathLight light;  ///< of the rig file's poses
+};
+
+WorldMaker::WorldMaker(std::unique_ptr<State> state) : state_(std::move(state)) {}
+WorldMaker::WorldMaker(WorldMaker&&) noexcept = default;
+WorldMaker::~WorldMaker() = default;
+
+Result<WorldMaker> WorldMaker::make(const Rig& rig, double max_error, const Watch& watch) {
+  auto built = scene_of(rig);
+  if (!built) return tl::unexpected(built.error());
+  RayScene scene(*built);
+  std::vector<Receiver> receivers = receivers_of(rig);
+  auto light = path_light(rig, scene, receivers, max_error, 1, watch);
+  if (!light) return tl::unexpected(light.error());
+  return WorldMaker(std::make_unique<State>(
+      State{rig, std::move(*built), std::move(scene), std::move(receivers), std::move(*light)}));
+}
+
+Result<std::unique_ptr<World>> WorldMaker::world(const Deviations& deviations) const {
+  const State& s = *state_;
+  const Rig true_rig = with_true_poses(s.rig, draw_fixtures(s.rig, deviations));
+  const auto fixtures = static_cast<Eigen::Index>(s.rig.fixtures.size());
+  EvaluateOptions options;
+  options.wanted_relative_error = kDirectError;
+  set_error_floor(s.rig, options);
+  options.threads = 1;
+  auto direct = make_direct_evaluator(s.scene)->evaluate(s.receivers, emitters_of(true_rig), options);
+  if (!direct) return tl::unexpected(direct.error());
+  const TransportMatrix& nominal = s.light.transport;
+  const Eigen::MatrixXd indirect =
+      (nominal.lux_per_level - nominal.direct_lux_per_level).leftCols(fixtures).cwiseMax(0.0);
+  return World::make(s.rig, deviations, direct->direct_lux_per_level + indirect,
+                     light_of_heads(s.rig, mounts_of(true_rig), s.scene, s.receivers, s.light.spread),
+                     daylight_lux(s.rig, nominal));
 }
 
 }  // namespace luxrig::sim

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "core/check.h"
 #include "sim/devices/dimmer.h"
@@ -27,7 +28,9 @@ class MatrixWorld final : public World {
         fixed_lx_(std::move(fixed_lx)),
         level_(Eigen::VectorXd::Zero(lux_per_level.cols())),
         lux_(fixed_lx_),
-        peak_lx_(lux_) {
+        peak_lx_(lux_),
+        lamp_share_(Eigen::VectorXd::Ones(lux_.size())),
+        cover_(Eigen::VectorXd::Ones(static_cast<Eigen::Index>(rig.luxmeters.size()))) {
     for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
       dimmers_.emplace_back(rig.fixtures[f].dimmer_curve, truths_[f].curve_exponent, deviations.lamp_lag_s);
       heads_.emplace_back(rig.fixtures[f]);
@@ -51,6 +54,7 @@ class MatrixWorld final : public World {
       truth.index = m;
       meters_.emplace_back(truth);
       meter_gains_.push_back(truth.gain);
+      meter_points_.push_back(meter.point);
     }
     for (const Point& point : rig.points) limits_lx_.push_back(point.max_lx);
     open_violation_.assign(points_, false);
@@ -75,6 +79,24 @@ class MatrixWorld final : public World {
   void set_joints(std::size_t fixture, const Joints& joints) override {
     LUXRIG_CHECK(fixture < heads_.size(), "fixture {} of {}", fixture, heads_.size());
     heads_[fixture].carry_to(joints);
+  }
+
+  void set_shade(std::size_t point, double share) override {
+    LUXRIG_CHECK(point < points_, "point {} of {}", point, points_);
+    lamp_share_[static_cast<Eigen::Index>(point)] = share;
+    for (std::size_t m = 0; m < meter_points_.size(); ++m)
+      if (meter_points_[m] == point) lamp_share_[static_cast<Eigen::Index>(points_ + m)] = share;
+    changed_ = true;
+  }
+
+  void set_cover(std::size_t luxmeter, double share) override {
+    LUXRIG_CHECK(luxmeter < meters_.size(), "luxmeter {} of {}", luxmeter, meters_.size());
+    cover_[static_cast<Eigen::Index>(luxmeter)] = share;
+  }
+
+  void set_daylight(double factor) override {
+    daylight_ = factor;
+    changed_ = true;
   }
 
   void advance(Time now) override {
@@ -121,7 +143,7 @@ class MatrixWorld final : public World {
   void tick() {
     ++tick_;
     const double dt_s = to_seconds(kTick);
-    bool changed = false;
+    bool changed = std::exchange(changed_, false);
     for (const std::size_t f : moving_) {
       if (!heads_[f].moving()) continue;
       heads_[f].step(dt_s);
@@ -140,12 +162,13 @@ class MatrixWorld final : public World {
     }
     if (changed) {  // a rig at rest only costs its meters
       lux_.noalias() = lux_per_level_ * level_;
-      lux_ += fixed_lx_;
+      lux_ = lux_.cwiseProduct(lamp_share_) + daylight_ * fixed_lx_;
       peak_lx_ = peak_lx_.cwiseMax(lux_);
       watch_limits();
     }
     for (std::size_t m = 0; m < meters_.size(); ++m) {
-      meters_[m].step(lux_[static_cast<Eigen::Index>(points_ + m)], dt_s, tick_);
+      const auto i = static_cast<Eigen::Index>(m);
+      meters_[m].step(cover_[i] * lux_[static_cast<Eigen::Index>(points_) + i], dt_s, tick_);
     }
   }
 
@@ -191,6 +214,10 @@ class MatrixWorld final : public World {
   std::vector<double> meter_gains_;
   std::vector<std::optional<double>> limits_lx_;
   Eigen::VectorXd fixed_lx_, level_, lux_, peak_lx_;
+  Eigen::VectorXd lamp_share_, cover_;  ///< per row; per luxmeter
+  double daylight_ = 1;
+  bool changed_ = false;  ///< light, by something else than lamps and heads
+  std::vector<std::optional<std::size_t>> meter_points_;
   std::vector<Violation> violations_;
   std::vector<bool> open_violation_;
   std::uint64_t tick_ = 0;

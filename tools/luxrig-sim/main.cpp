@@ -12,12 +12,12 @@
 #include "core/rig/rig_file.h"
 #include "sim/faults/faults.h"
 #include "sim/wire/rig_server.h"
+#include "sim/world/deviations_text.h"
 #include "tools/command_line/completion.h"
 #include "tools/command_line/installed.h"
 #include "tools/command_line/parse_command_line.h"
 #include "tools/command_line/version.h"
 #include "tools/luxrig-sim/control_http.h"
-#include "tools/luxrig-sim/deviations_option.h"
 #include "tools/luxrig-sim/ports_file.h"
 
 namespace {

@@ -1,4 +1,4 @@
-#include "tools/luxrig-sim/deviations_option.h"
+#include "sim/world/deviations_text.h"
 
 #include <fmt/format.h>
 
@@ -29,11 +29,11 @@ constexpr Field kFields[] = {
 
 }  // namespace
 
-Checked<Deviations> parse_deviations(const std::string& text) {
+Checked<Deviations> parse_deviations(const std::string& text, const std::string& file) {
   Deviations deviations;
   std::vector<Problem> problems;
-  const auto problem = [&problems](std::string what, std::string mend) {
-    problems.push_back({"--deviations", 0, 0, std::move(what), std::move(mend)});
+  const auto problem = [&](std::string what, std::string mend) {
+    problems.push_back({file, 0, 0, std::move(what), std::move(mend)});
   };
   std::istringstream in(text);
   for (std::string part; std::getline(in, part, ',');) {
