@@ -1,5 +1,5 @@
 #pragma once
-/// Every key of the rig file and of register maps, once: type, unit, default, range, example and meaning. The reader
+/// Every key of the rig file, of register maps and of scenarios, once: type, unit, default, range, example and meaning. The reader
 /// checks values against this table (section.h). The tables of rigs/REFERENCE.md (tools/reference) and the rig that
 /// tests read with every key set are made from it.
 
@@ -58,7 +58,7 @@ struct SectionSpec {
   std::size_t most;          ///< most entries of a list
   bool takes_other_keys;     ///< [[bus]]: the driver's own keys
   /// File that it belongs to.
-  enum class File { rig, register_map } file = File::rig;
+  enum class File { rig, register_map, scenario } file = File::rig;
 };
 
 /// Sections of all files.

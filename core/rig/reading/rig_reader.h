@@ -77,7 +77,6 @@ struct RigReader {
   void read_all();
 
  private:
-  void read_unknown_sections();
   void read_scene();
   void read_luminaires();
   void read_buses();
@@ -106,8 +105,6 @@ struct RigReader {
   void read_startup();
   void read_settings();
 
-  /// Calls body for every entry of a list section, or for the one of a plain section, in file order. A section of the
-  /// wrong shape or with too many entries is reported and skipped.
   void each(const NodeTable& table, std::string_view section, const std::function<void(Section&)>& body);
   /// The path given by the key, if there is such a file.
   std::optional<std::filesystem::path> read_file(Section& section, std::string_view key);

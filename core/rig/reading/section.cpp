@@ -392,4 +392,55 @@ bool Section::read_texts(std::string_view key, std::vector<std::pair<std::string
   return good;
 }
 
+void each_section(const NodeTable& table, std::string_view section, ProblemList& problems,
+                  const std::function<void(Section&)>& body) {
+  const SectionSpec& spec = section_spec(section);
+  const std::size_t dot = section.rfind('.');
+  const Member* member = find(table, dot == std::string_view::npos ? section : section.substr(dot + 1));
+  if (!member) return;
+  const auto* list = std::get_if<NodeList>(&member->node.value);
+  const auto* single = std::get_if<NodeTable>(&member->node.value);
+  const auto wrong_shape = [&](const FilePosition& in_file) {
+    problems.add(in_file, fmt::format("{} is not {}", section, spec.list ? "a list of tables" : "a table"),
+                 fmt::format("head {} with {}", spec.list ? "each entry" : "it", heading_of(spec)));
+  };
+  if (spec.list ? list == nullptr : single == nullptr) {
+    wrong_shape(member->key_place);
+    return;
+  }
+  if (single) {
+    Section entry(*single, member->node.in_file, section, problems);
+    body(entry);
+    return;
+  }
+  if (list->size() > spec.most) {
+    problems.add(member->key_place, fmt::format("{} entries of {}", list->size(), heading_of(spec)),
+                 fmt::format("use at most {}", spec.most));
+    return;
+  }
+  for (const Node& node : *list) {
+    if (const auto* entry_table = std::get_if<NodeTable>(&node.value)) {
+      Section entry(*entry_table, node.in_file, section, problems);
+      body(entry);
+    } else {
+      wrong_shape(node.in_file);
+    }
+  }
+}
+
+void report_unknown_sections(const NodeTable& root, SectionSpec::File file, std::string_view what,
+                             ProblemList& problems) {
+  std::vector<std::string_view> known;
+  for (const SectionSpec& section : sections()) {
+    if (section.file == file && section.name.find('.') == std::string_view::npos) known.push_back(section.name);
+  }
+  for (const Member& member : root) {
+    if (std::find(known.begin(), known.end(), member.key) != known.end()) continue;
+    if (problems.full()) return;
+    problems.add(member.key_place,
+                 fmt::format("unknown section {}{}{}", in_quotes(member.key), what.empty() ? "" : " in ", what),
+                 mend_for_unknown(member.key, known, "remove it"));
+  }
+}
+
 }  // namespace luxrig

@@ -9,6 +9,7 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -90,5 +91,16 @@ class Section {
   std::span<const KeySpec> keys_;
   ProblemList& problems_;
 };
+
+/// Calls body for every entry of a list section, or for the one of a plain section, in file order. A section of the
+/// wrong shape or with too many entries is reported and skipped.
+/// table   the document; for a section "a.b", the table of "a"
+void each_section(const NodeTable& table, std::string_view section, ProblemList& problems,
+                  const std::function<void(Section&)>& body);
+
+/// Reports the document's sections that this kind of file does not have.
+/// what   the file in words, as in "unknown section "buss" in a scenario"; empty for the rig file
+void report_unknown_sections(const NodeTable& root, SectionSpec::File file, std::string_view what,
+                             ProblemList& problems);
 
 }  // namespace luxrig

@@ -24,7 +24,7 @@ class MapReader {
   MapReader(const NodeTable& root, const std::string& file) : root_(root), problems_(file) {}
 
   Checked<RegisterMap> read() {
-    check_sections();
+    report_unknown_sections(root_, SectionSpec::File::register_map, "a register map", problems_);
     if (!luxrig::find(root_, "device")) {
       problems_.add({1, 1}, "there is no [device]", "begin with [device] and the product's name and source below it");
     }
@@ -37,47 +37,8 @@ class MapReader {
   }
 
  private:
-  void check_sections() {
-    std::vector<std::string_view> known;
-    for (const SectionSpec& section : sections()) {
-      if (section.file == SectionSpec::File::register_map) known.push_back(section.name);
-    }
-    for (const Member& member : root_) {
-      if (std::find(known.begin(), known.end(), member.key) != known.end()) continue;
-      if (problems_.full()) return;
-      problems_.add(member.key_place, fmt::format("unknown section {} in a register map", in_quotes(member.key)),
-                    mend_for_unknown(member.key, known, "remove it"));
-    }
-  }
-
   void each(std::string_view name, const std::function<void(Section&)>& body) {
-    const SectionSpec& spec = section_spec(name);
-    const Member* member = luxrig::find(root_, name);
-    if (member == nullptr) return;
-    const auto* list = std::get_if<NodeList>(&member->node.value);
-    const auto* single = std::get_if<NodeTable>(&member->node.value);
-    const auto wrong_shape = [&](const FilePosition& in_file) {
-      problems_.add(in_file, fmt::format("{} is not {}", name, spec.list ? "a list of tables" : "a table"),
-                    fmt::format("head {} with {}", spec.list ? "each entry" : "it", heading_of(spec)));
-    };
-    if (spec.list ? list == nullptr : single == nullptr) return wrong_shape(member->key_place);
-    if (single != nullptr) {
-      Section section(*single, member->node.in_file, name, problems_);
-      return body(section);
-    }
-    if (list->size() > spec.most) {
-      problems_.add(member->key_place, fmt::format("{} entries of {}", list->size(), heading_of(spec)),
-                    fmt::format("use at most {}", spec.most));
-      return;
-    }
-    for (const Node& node : *list) {
-      if (const auto* table = std::get_if<NodeTable>(&node.value)) {
-        Section section(*table, node.in_file, name, problems_);
-        body(section);
-      } else {
-        wrong_shape(node.in_file);
-      }
-    }
+    each_section(root_, name, problems_, body);
   }
 
   void read_device(Section& s) {

@@ -20,5 +20,6 @@ inline constexpr Bounds kKelvin{1667, 25000};
 [[nodiscard]] std::span<const KeySpec> task_keys();
 [[nodiscard]] std::span<const KeySpec> control_keys();
 [[nodiscard]] std::span<const KeySpec> register_map_keys();
+[[nodiscard]] std::span<const KeySpec> scenario_keys();
 
 }  // namespace luxrig::schema

@@ -8,8 +8,9 @@ namespace luxrig {
 std::span<const KeySpec> keys() {
   static const std::vector<KeySpec> all = [] {
     std::vector<KeySpec> joined;
-    for (const std::span<const KeySpec> part : {schema::room_keys(), schema::fixture_keys(), schema::task_keys(),
-                                                schema::control_keys(), schema::register_map_keys()}) {
+    for (const std::span<const KeySpec> part :
+         {schema::room_keys(), schema::fixture_keys(), schema::task_keys(), schema::control_keys(),
+          schema::register_map_keys(), schema::scenario_keys()}) {
       joined.insert(joined.end(), part.begin(), part.end());
     }
     return joined;

@@ -1,10 +1,10 @@
-// Every section of a rig file and of a register map, in the order of REFERENCE.md.
+// Every section of a rig file, a register map and a scenario, in the order of REFERENCE.md.
 #include "core/rig/schema.h"
 
 namespace luxrig {
 namespace {
 
-constexpr auto kInMap = SectionSpec::File::register_map;
+constexpr auto kInMap = SectionSpec::File::register_map, kInScenario = SectionSpec::File::scenario;
 constexpr SectionSpec kSections[] = {
     {"rig", false, 1, false},
     {"scene", false, 1, false},
@@ -30,6 +30,9 @@ constexpr SectionSpec kSections[] = {
     {"device", false, 1, false, kInMap},
     {"register", true, 2000, false, kInMap},
     {"setup", true, 100, false, kInMap},
+    {"scenario", false, 1, false, kInScenario},
+    {"event", true, 1000, false, kInScenario},
+    {"expect", true, 1000, false, kInScenario},
 };
 
 }  // namespace
