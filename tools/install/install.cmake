@@ -10,7 +10,7 @@ file(CREATE_LINK ${PROJECT_SOURCE_DIR}/rigs ${CMAKE_BINARY_DIR}/share/luxrig/rig
 # are, one for each command. The folder is cleared first, so pages of removed commands go.
 set(manual ${CMAKE_BINARY_DIR}/manual)
 set(manuals "")
-foreach(program luxrig luxrig-bench luxrigd luxrig-sim)
+foreach(program luxrig luxrig-bench luxrig-test luxrigd luxrig-sim)
   set(of_program ${manual}/${program})
   add_custom_command(
     OUTPUT ${of_program}/bash ${of_program}/zsh ${of_program}/fish
@@ -27,12 +27,12 @@ foreach(program luxrig luxrig-bench luxrigd luxrig-sim)
 endforeach()
 add_custom_target(manual DEPENDS ${manuals})
 # Everything that `cmake --install` needs.
-add_custom_target(installable DEPENDS luxrig luxrig-bench luxrigd luxrig-sim luxrig-guardian manual)
+add_custom_target(installable DEPENDS luxrig luxrig-bench luxrig-test luxrigd luxrig-sim luxrig-guardian manual)
 if(TARGET web)
   add_dependencies(installable web)
 endif()
 
-install(TARGETS luxrig luxrig-bench luxrigd luxrig-sim luxrig-guardian RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(TARGETS luxrig luxrig-bench luxrig-test luxrigd luxrig-sim luxrig-guardian RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/rigs/ DESTINATION ${CMAKE_INSTALL_DATADIR}/luxrig/rigs)
 if(TARGET web)
   install(DIRECTORY ${LUXRIG_WEB_DIR}/ DESTINATION ${CMAKE_INSTALL_DATADIR}/luxrig/web)
@@ -44,7 +44,7 @@ install(CODE [[
     set(zsh_folder vendor-completions)
   endif()
 ]])
-foreach(program luxrig luxrig-bench luxrigd luxrig-sim)
+foreach(program luxrig luxrig-bench luxrig-test luxrigd luxrig-sim)
   install(DIRECTORY ${manual}/${program}/man1/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
   install(FILES ${manual}/${program}/bash RENAME ${program}
           DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)

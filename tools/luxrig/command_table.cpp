@@ -9,15 +9,18 @@ namespace {
 constexpr Command kBenchCommand{"bench", command_group::kMeasure, "run time against error, on a named suite", nullptr,
                                 "luxrig-bench"};
 
+constexpr Command kTestCommand{"test", command_group::kRun, "scenarios on the simulated rig, judged", nullptr,
+                               "luxrig-test"};
+
 }  // namespace
 
 const std::vector<Command>& command_table() {
   static const std::vector<Command> table = {
-      kInitCommand,   kCheckCommand,    kImportCommand,  kEvaluateCommand, kSolveCommand,
-      kRenderCommand, kRunCommand,      kApplyCommand,   kStatusCommand,   kLevelCommand,
-      kGoalCommand,   kReleaseCommand,  kParkCommand,    kBlackoutCommand, kHandBackCommand,
-      kReloadCommand, kPageCommand,     kMonitorCommand, kBypassCommand,   kDevicesCommand,
-      kRdmCommand,    kIdentifyCommand, kCameraCommand,  kBenchCommand,    kCompletionCommand,
+      kInitCommand,   kCheckCommand,      kImportCommand,   kEvaluateCommand, kSolveCommand,    kRenderCommand,
+      kRunCommand,    kApplyCommand,      kStatusCommand,   kLevelCommand,    kGoalCommand,     kReleaseCommand,
+      kParkCommand,   kBlackoutCommand,   kHandBackCommand, kReloadCommand,   kPageCommand,     kMonitorCommand,
+      kBypassCommand, kTestCommand,       kDevicesCommand,  kRdmCommand,      kIdentifyCommand, kCameraCommand,
+      kBenchCommand,  kCompletionCommand,
   };
   return table;
 }

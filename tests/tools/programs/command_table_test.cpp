@@ -83,7 +83,7 @@ TEST(CommandTable, HelpOfEveryCommandFitsATerminal) {
 }
 
 TEST(CommandTable, EveryCommandHasAManPage) {
-  for (const char* name : {"luxrig", "luxrig-bench", "luxrigd", "luxrig-sim"}) {
+  for (const char* name : {"luxrig", "luxrig-bench", "luxrig-test", "luxrigd", "luxrig-sim"}) {
     const Folder folder;
     std::filesystem::create_directory(folder / "man1");
     const Ran ran = luxrig::testing::run({program(name), "--man-pages", (folder / "man1").string()});
@@ -140,7 +140,7 @@ TEST(CommandTable, BashCompletesCommandsOptionsWordsAndRigs) {
 }
 
 TEST(CommandTable, EveryProgramPrintsItsShellCompletions) {
-  for (const char* name : {"luxrig", "luxrig-bench", "luxrigd", "luxrig-sim"}) {
+  for (const char* name : {"luxrig", "luxrig-bench", "luxrig-test", "luxrigd", "luxrig-sim"}) {
     for (const char* shell : {"bash", "zsh", "fish"}) {
       const Ran ran = luxrig::testing::run({program(name), "--completion", shell});
       EXPECT_EQ(ran.code, 0) << name << shell;

@@ -1,0 +1,253 @@
+// Expectations and rules judged on made-up instants, so that each verdict has one cause.
+#include "tools/scenario/judge.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/core/rig/listed_problems.h"
+#include "tests/tools/scenario/small_rig.h"
+#include "tools/scenario/scenario_file.h"
+#include "tools/scenario/show_rules.h"
+
+namespace luxrig::scenario {
+namespace {
+
+constexpr double kTick_s = 0.02;
+
+/// A show that a test makes up: everything dark and well until it says otherwise.
+struct MadeUp {
+  Rig rig = small_rig();
+  ShowStatus status;
+  Instant now;
+  MadeUp() {
+    status.points.resize(rig.points.size());
+    now.status = &status;
+    now.lux.assign(rig.points.size(), 0.0);
+    now.lux_hours = now.lux;
+    now.reading_lx.resize(rig.luxmeters.size());
+    now.level.assign(rig.fixtures.size(), 0.0);
+    now.joints.resize(rig.fixtures.size());
+  }
+};
+
+class JudgeTest : public testing::Test {
+ protected:
+  MadeUp show;
+
+  /// Verdict on one expectation. lux: of work-1 at each second.
+  Judged verdict(const std::string& expectation, const std::vector<double>& lux,
+                 const std::vector<std::pair<std::size_t, double>>& events = {}) {
+    const std::string text =
+        "[scenario]\nname = \"t\"\nlength_s = 1000\n[[event]]\nname = \"it\"\nat_s = 0\ndo = "
+        "\"blackout\"\n[[expect]]\n" +
+        expectation;
+    const auto scenario = parse_scenario(text, "t.toml", show.rig);
+    EXPECT_TRUE(scenario.has_value()) << (scenario ? "" : test::listed(scenario.error()));
+    if (!scenario) return {};
+    Judge judge(*scenario, show.rig);
+    for (std::size_t s = 0; s < lux.size(); ++s) {
+      for (const auto& [event, at_s] : events)
+        if (at_s == static_cast<double>(s)) judge.happened(event, at_s);
+      show.now.lux[0] = lux[s];
+      judge.look(static_cast<double>(s), show.now);
+    }
+    return judge.end(static_cast<double>(lux.size())).front();
+  }
+};
+
+TEST_F(JudgeTest, AlwaysFailsAtTheFirstInstantThatIsOtherwise) {
+  EXPECT_TRUE(verdict("always = \"lux work-1 <= 50\"", {10, 50, 20}).held);
+  const Judged judged = verdict("always = \"lux work-1 <= 50\"", {10, 50.1, 60});
+  EXPECT_FALSE(judged.held);
+  EXPECT_EQ(judged.at_s, 1);
+  EXPECT_EQ(judged.found, "lux of work-1 is 50.1 lx");
+}
+
+TEST_F(JudgeTest, NeverFailsForAnyOfTheNames) {
+  EXPECT_TRUE(verdict("never = \"lux work-* > 50\"", {10, 50, 20}).held);
+  EXPECT_FALSE(verdict("never = \"lux work-* > 50\"", {10, 51, 20}).held);
+}
+
+TEST_F(JudgeTest, ReachedNeedsOneInstantInItsTime) {
+  EXPECT_TRUE(verdict("reached = \"lux work-1 > 50\"", {0, 60, 0}).held);
+  EXPECT_FALSE(verdict("reached = \"lux work-1 > 50\"", {0, 0, 0}).held);
+  EXPECT_TRUE(verdict("reached = \"lux work-1 > 50\"\nwithin_s = 2", {0, 0, 60}).held);
+  const Judged late = verdict("reached = \"lux work-1 > 50\"\nwithin_s = 2", {0, 0, 0, 60});
+  EXPECT_FALSE(late.held);
+  EXPECT_EQ(late.found, "not within 2 s: lux of work-1 is 0 lx");
+}
+
+TEST_F(JudgeTest, AtEndLooksAtTheEndOfItsTimeOnly) {
+  EXPECT_TRUE(verdict("at_end = \"lux work-1 > 50\"", {0, 0, 60}).held);
+  EXPECT_FALSE(verdict("at_end = \"lux work-1 > 50\"", {60, 60, 0}).held);
+  EXPECT_TRUE(verdict("at_end = \"lux work-1 > 50\"\nwithin_s = 1", {0, 60, 0}).held);
+  EXPECT_FALSE(verdict("at_end = \"lux work-1 > 50\"\nwithin_s = 1", {60, 0, 60}).held);
+}
+
+TEST_F(JudgeTest, ATimeBeginsWithItsEvent) {
+  const std::string after = "always = \"lux work-1 <= 50\"\nafter = \"it\"\nfrom_s = 1\nwithin_s = 2";
+  EXPECT_TRUE(verdict(after, {90, 90, 90, 10, 10, 10, 90}, {{0, 2}}).held);
+  EXPECT_FALSE(verdict(after, {90, 90, 90, 90, 10, 10}, {{0, 2}}).held);
+  const Judged never = verdict(after, {10, 10, 10});
+  EXPECT_FALSE(never.held);
+  EXPECT_EQ(never.found, "\"it\" never happened");
+}
+
+TEST_F(JudgeTest, ATimeThatNeverComesAndAValueThatIsNeverKnownAreNoSuccess) {
+  EXPECT_EQ(verdict("always = \"lux work-1 <= 50\"\nfrom_s = 100", {1, 1}).found, "its time never came");
+  EXPECT_EQ(verdict("always = \"reading meter-1 <= 50\"", {1, 1}).found, "its value was never known");
+}
+
+class RulesTest : public testing::Test {
+ protected:
+  MadeUp show;
+  double at_s = 10;
+
+  ShowRules rules{show.rig};
+
+  void look(int ticks = 1) {
+    for (int k = 0; k < ticks; ++k) {
+      at_s += kTick_s;
+      rules.look(at_s, show.now, std::vector<bool>(show.rig.buses.size(), true));
+    }
+  }
+  /// What is said about broken rules, in lines.
+  std::string broken() {
+    std::string text;
+    for (const Judged& rule : rules.end())
+      if (!rule.held) text += rule.expected + ": " + rule.found + "\n";
+    return text;
+  }
+};
+
+TEST_F(RulesTest, AQuietShowBreaksNone) {
+  look(100);
+  EXPECT_EQ(broken(), "");
+}
+
+TEST_F(RulesTest, LightAboveALimitBreaksTheFirst) {
+  look();
+  show.now.lux[1] = 51;  // within the meter's 4 %
+  look();
+  EXPECT_EQ(broken(), "");
+  show.now.lux[1] = 53;
+  look();
+  EXPECT_EQ(broken(), "no output exceeds a limit: work-2 gets 53.0 lx, its limit is 50 lx\n");
+}
+
+TEST_F(RulesTest, ALevelAboveTheHighestBreaksTheFirst) {
+  show.rig.fixtures[3].max_level = 0.4;
+  show.now.level[3] = 0.41;
+  look();
+  EXPECT_EQ(broken(), "no output exceeds a limit: spot-4 is sent level 0.410, its highest is 0.400\n");
+}
+
+TEST_F(RulesTest, AJumpBreaksTheSecondUnlessSomebodyMadeIt) {
+  look();
+  show.now.level[0] = 0.045;  // the fastest fade takes 0.8 s
+  look();
+  EXPECT_EQ(broken(), "");
+  rules.disturbed(at_s);
+  show.now.level[0] = 0.9;
+  look();
+  EXPECT_EQ(broken(), "");
+  look(60);
+  show.now.level[0] = 0.8;
+  look();
+  EXPECT_EQ(broken(), "light does not jump unless somebody makes it: spot-1 jumps from level 0.900 to 0.800\n");
+}
+
+TEST_F(RulesTest, ABusThatIsNotServedBreaksTheThird) {
+  look(3);
+  at_s += 0.4;
+  look();
+  EXPECT_NE(broken().find("the output cycle never waits: nothing was sent on bus \"track\" for 0.42 s"),
+            std::string::npos);
+}
+
+TEST_F(RulesTest, AForgottenBlackoutAndAForgottenHandBreakTheFourth) {
+  show.status.blackout = true;
+  ByHand held;
+  held.index = 2;
+  held.value = 0.5;
+  show.status.by_hand = {held};
+  rules.daemon_gone(at_s, show.status);
+  ShowStatus after = show.status;
+  rules.daemon_back(at_s + 1, after);
+  EXPECT_EQ(broken(), "");
+  rules.daemon_gone(at_s + 2, show.status);
+  after.by_hand.clear();
+  rules.daemon_back(at_s + 3, after);
+  EXPECT_EQ(
+      broken(),
+      "what was acknowledged survives a restart: spot-3 at level 0.5 is no longer held by hand after a restart\n");
+}
+
+TEST_F(RulesTest, LightDrivenUpByAWrongMeterBreaksTheFifth) {
+  show.rig.points[4].goal_lx = 100;
+  show.status.points[4].goal_lx = 100;
+  show.now.lux[4] = 100;
+  rules.meter_lies(at_s, 4, true);
+  look();
+  show.now.lux[4] = 275;  // allowed: 100 / (0.6 · 0.75) · 1.25 + 1
+  look();
+  EXPECT_EQ(broken(), "");
+  show.now.lux[4] = 285;
+  look();
+  EXPECT_NE(broken().find("a wrong meter cannot drive the light up: place-1 gets 285.0 lx"), std::string::npos);
+}
+
+TEST_F(RulesTest, AGoalCalledMetThatIsNotBreaksTheSixth) {
+  show.status.phase = Phase::holding;
+  show.status.points[5].goal_lx = 100;
+  show.status.points[5].verdict = Verdict::met;
+  show.now.lux[5] = 75;
+  look(100);
+  EXPECT_EQ(broken(), "") << "for two seconds it may be late";
+  look(100);
+  EXPECT_NE(broken().find("nothing is called met that is not: place-2 is called met"), std::string::npos);
+}
+
+TEST_F(RulesTest, LightInABlackoutAndAHeadThatTurnsBreakTheSeventh) {
+  rules.blackout(at_s, true);
+  show.status.blackout = true;
+  look(100);
+  EXPECT_EQ(broken(), "");
+  show.now.joints[4].pan_rad = 0.1;
+  look();
+  EXPECT_NE(broken().find("spot-5 turns by 5.7° in a blackout"), std::string::npos);
+}
+
+TEST_F(RulesTest, ALampLitInABlackoutBreaksTheSeventh) {
+  rules.blackout(at_s, true);
+  show.now.level[0] = 0.01;
+  look(4);
+  EXPECT_EQ(broken(), "") << "it takes a moment";
+  look(4);
+  EXPECT_NE(broken().find("spot-1 is sent level 0.010 in a blackout"), std::string::npos);
+}
+
+TEST_F(RulesTest, AForgottenHandBreaksTheEighth) {
+  ByHand held;
+  held.index = 2;
+  held.value = 0.5;
+  show.status.by_hand = {held};
+  rules.held_by_hand(at_s, 2, 0.5, std::nullopt);
+  look(100);
+  EXPECT_EQ(broken(), "");
+  show.status.by_hand.clear();
+  look();
+  EXPECT_NE(broken().find("spot-3 was set to level 0.5 by hand, and is no longer held"), std::string::npos);
+}
+
+TEST_F(RulesTest, AnUnsafeEndBreaksTheLast) {
+  rules.ended_in_order(at_s, std::vector<double>(show.rig.fixtures.size(), show.rig.safe.level));
+  EXPECT_EQ(broken(), "");
+  rules.ended_in_order(at_s, std::vector<double>(show.rig.fixtures.size(), show.rig.safe.level + 0.1));
+  EXPECT_NE(broken().find("a daemon that ends in order leaves the safe look: spot-1 is left at level 0.200"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace luxrig::scenario

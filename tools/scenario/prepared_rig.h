@@ -1,0 +1,30 @@
+#pragma once
+/// What all runs of a rig share: its scene, its light, its solved plan, and the truths of its seeds. Computed once.
+
+#include <filesystem>
+#include <memory>
+
+#include "core/plan/plan.h"
+#include "core/tasks/session.h"
+#include "sim/world/world.h"
+#include "tools/luxrigd/light_of_looks.h"
+
+namespace luxrig::scenario {
+
+struct PreparedRig {
+  std::shared_ptr<const Session> session;
+  Plan plan;        ///< of the rig's tasks, for what hangs
+  KeptLight light;  ///< for the plan's joints
+  std::shared_ptr<LightOfLooks> looks;
+  sim::WorldMaker worlds;
+};
+
+struct PrepareOptions {
+  ComputeOptions compute;
+  double max_truth_error = 0.01;
+};
+
+/// All problems of the rig; or what cannot be computed or solved, as a problem of its file.
+[[nodiscard]] Checked<PreparedRig> prepare(const std::filesystem::path& rig, const PrepareOptions& options);
+
+}  // namespace luxrig::scenario

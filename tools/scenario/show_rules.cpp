@@ -1,0 +1,286 @@
+#include "tools/scenario/show_rules.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace luxrig::scenario {
+namespace {
+
+constexpr double kTick_s = 0.02;
+/// Rounding, and a step of the lamp's output between two ticks of the truth.
+constexpr double kLimitSlack = 1e-3;
+/// After a command or a restart, light may change at once.
+constexpr double kDisturbance_s = 0.6;
+/// A real bus is written to every 0.02 s to 0.1 s.
+constexpr double kLongestWait_s = 0.25;
+/// Light follows an order through a bus and a lamp.
+constexpr double kUntilDark_s = 0.1;
+/// A verdict lags behind the light by a meter's sample, and a wrong one has to last.
+constexpr double kWrongFor_s = 3, kAfterLie_s = 30;
+/// A verdict's interval holds for 95 of 100; a truth this many tolerances off is no such chance.
+constexpr double kCalledMet = 2;
+/// How far the truth may be off the model beyond that.
+constexpr double kOffModel = 1.25;
+/// A fixture that hears again gets more light than meters asked for; a sample corrects that.
+constexpr double kHearsAgain_s = 15;
+constexpr double kHandWithin_s = 15, kLevelStep = 0.002;
+
+constexpr const char* kSentences[] = {
+    "no output exceeds a limit",
+    "light does not jump unless somebody makes it",
+    "the output cycle never waits",
+    "what was acknowledged survives a restart",
+    "a wrong meter cannot drive the light up",
+    "nothing is called met that is not",
+    "a blackout is dark and turns no head",
+    "what a person holds by hand stays",
+    "no lit beam meets a keep-out zone",
+    "a daemon that ends in order leaves the safe look",
+};
+
+double goal_or_limit_lx(const Rig& rig, std::size_t point, const ShowStatus& status) {
+  const auto goal = status.points[point].goal_lx;
+  return std::max(goal.value_or(0), rig.points[point].max_lx.value_or(0));
+}
+
+}  // namespace
+
+ShowRules::ShowRules(const Rig& rig) : rig_(rig), zones_(rig), judged_(rules) {
+  static_assert(std::size(kSentences) == rules);
+  for (std::size_t r = 0; r < rules; ++r) judged_[r].expected = kSentences[r];
+  const double fastest_s = std::min({rig.control.fade_s, rig.control.correction_fade_s, rig.safe.fade_s});
+  // An s-curve is steepest in its middle: 1.5 times its mean. Two fades may follow each other within a tick.
+  max_step_ = fastest_s > 0 ? std::min(1.0, 1.5 * kTick_s / fastest_s * 1.25) : 1.0;
+  last_sent_s_.assign(rig.buses.size(), NAN);
+}
+
+void ShowRules::broken(Rule rule, double at_s, std::string found) {
+  Judged& judged = judged_[rule];
+  if (!judged.held) return;  // the first time is told
+  judged.held = false;
+  judged.at_s = at_s;
+  judged.found = std::move(found);
+}
+
+void ShowRules::disturbed(double at_s) { disturbed_s_ = at_s; }
+
+void ShowRules::blackout(double at_s, bool on) {
+  disturbed(at_s);
+  if (on && !dark_) dark_since_s_ = at_s;
+  dark_ = on;
+  dark_joints_.clear();
+}
+
+void ShowRules::held_by_hand(double at_s, std::size_t fixture, double level, std::optional<double> for_s) {
+  disturbed(at_s);
+  hands_[fixture] = {level, at_s, for_s ? std::optional(at_s + *for_s) : std::nullopt};
+}
+
+void ShowRules::released() { hands_.clear(); }
+
+void ShowRules::meter_lies(double at_s, std::size_t luxmeter, bool lies) {
+  lied_s_ = at_s;
+  if (lies)
+    lying_.try_emplace(luxmeter, NAN);
+  else
+    lying_.erase(luxmeter);
+}
+
+void ShowRules::light_is_strange(double at_s, bool strange) {
+  strange_ = strange;
+  strange_s_ = at_s;
+}
+
+void ShowRules::fixture_is_deaf(double at_s, bool deaf) {
+  deaf_ += deaf ? 1 : -1;
+  deaf_s_ = at_s;
+}
+
+void ShowRules::daemon_gone(double at_s, const ShowStatus& last) {
+  disturbed(at_s);
+  gone_with_ = last;
+  for (double& sent_s : last_sent_s_) sent_s = NAN;
+}
+
+void ShowRules::daemon_back(double at_s, const ShowStatus& first) {
+  disturbed(at_s);
+  if (!gone_with_) return;
+  if (gone_with_->blackout != first.blackout)
+    broken(survives, at_s, first.blackout ? "a blackout that nobody ordered" : "the blackout is gone after a restart");
+  for (const ByHand& held : gone_with_->by_hand) {
+    if (held.of_plan || held.until) continue;
+    const bool there = std::any_of(first.by_hand.begin(), first.by_hand.end(), [&](const ByHand& one) {
+      return one.what == held.what && one.index == held.index && one.value == held.value;
+    });
+    const bool level = held.what == ByHand::What::level;
+    if (!there)
+      broken(survives, at_s,
+             fmt::format("{} {} is no longer held by hand after a restart",
+                         level ? rig_.fixtures[held.index].name : rig_.points[held.index].name,
+                         level ? fmt::format("at level {:.3g}", held.value) : fmt::format("at {:.4g} lx", held.value)));
+  }
+  gone_with_.reset();
+}
+
+void ShowRules::ended_in_order(double at_s, const std::vector<double>& level) {
+  for (std::size_t f = 0; f < level.size(); ++f) {
+    const Fixture& fixture = rig_.fixtures[f];
+    const double safe =
+        std::min({fixture.safe_level.value_or(rig_.buses[fixture.bus].safe_level.value_or(rig_.safe.level)),
+                  fixture.max_level, rig_.limits.max_level});
+    // Limits may hold a lamp below its safe level.
+    if (level[f] > safe + kLevelStep)
+      broken(safe_at_end, at_s,
+             fmt::format("{} is left at level {:.3f}, its safe level is {:.3f}", fixture.name, level[f], safe));
+  }
+}
+
+void ShowRules::look(double at_s, const Instant& instant, const std::vector<bool>& sent) {
+  for (std::size_t b = 0; b < sent.size(); ++b) {
+    if (!sent[b]) continue;
+    if (const double gap_s = at_s - last_sent_s_[b]; gap_s > kLongestWait_s)
+      broken(waits, at_s, fmt::format("nothing was sent on bus \"{}\" for {:.2f} s", rig_.buses[b].name, gap_s));
+    last_sent_s_[b] = at_s;
+  }
+  look_at_limits(at_s, instant);
+  look_at_jumps(at_s, instant);
+  look_at_meters(at_s, instant);
+  look_at_verdicts(at_s, instant);
+  look_at_blackout(at_s, instant);
+  look_at_hands(at_s, instant);
+  look_at_zones(at_s, instant);
+  before_ = instant.level;
+}
+
+void ShowRules::look_at_limits(double at_s, const Instant& instant) {
+  for (std::size_t f = 0; f < instant.level.size(); ++f) {
+    const double most = std::min(rig_.fixtures[f].max_level, rig_.limits.max_level);
+    if (instant.level[f] > most + kLimitSlack)
+      broken(
+          limits, at_s,
+          fmt::format("{} is sent level {:.3f}, its highest is {:.3f}", rig_.fixtures[f].name, instant.level[f], most));
+  }
+  if (strange_) return;  // daylight is nobody's output, and who shades a meter raises its lamps
+  if (deaf_ > 0 || (deaf_s_ && at_s - *deaf_s_ < kHearsAgain_s)) return;
+  for (std::size_t p = 0; p < instant.lux.size(); ++p) {
+    if (!rig_.points[p].max_lx) continue;
+    double tolerance = kLimitSlack;
+    for (std::size_t m = 0; m < rig_.luxmeters.size(); ++m)
+      if (rig_.luxmeters[m].point == p) tolerance = std::max(tolerance, rig_.luxmeters[m].tolerance);
+    if (instant.lux[p] > *rig_.points[p].max_lx * (1 + tolerance))
+      broken(limits, at_s,
+             fmt::format("{} gets {:.1f} lx, its limit is {:g} lx", rig_.points[p].name, instant.lux[p],
+                         *rig_.points[p].max_lx));
+  }
+}
+
+void ShowRules::look_at_jumps(double at_s, const Instant& instant) {
+  if (before_.empty() || (disturbed_s_ && at_s - *disturbed_s_ <= kDisturbance_s)) return;
+  for (std::size_t f = 0; f < instant.level.size(); ++f) {
+    if (rig_.fixtures[f].switched) continue;
+    const double step = std::abs(instant.level[f] - before_[f]);
+    if (step > max_step_ + kLimitSlack)
+      broken(jumps, at_s,
+             fmt::format("{} jumps from level {:.3f} to {:.3f}", rig_.fixtures[f].name, before_[f], instant.level[f]));
+  }
+}
+
+void ShowRules::look_at_meters(double at_s, const Instant& instant) {
+  for (auto& [m, honest_lx] : lying_) {
+    const auto point = rig_.luxmeters[m].point;
+    if (!point) continue;
+    const double lux = instant.lux[*point];
+    if (std::isnan(honest_lx)) honest_lx = lux;
+    // Lamps that give the least that readings can make it believe need most.
+    const double least_gain = rig_.control.gain_min * (1 - rig_.limits.open_loop_margin);
+    const double allowed =
+        std::max(honest_lx, goal_or_limit_lx(rig_, *point, *instant.status)) / least_gain * kOffModel + 1;
+    const bool by_hand_lately = !hands_.empty() || (disturbed_s_ && at_s - *disturbed_s_ < kHandWithin_s);
+    if (!strange_ && lux > allowed && !by_hand_lately)
+      broken(wrong_meter, at_s,
+             fmt::format("{} gets {:.1f} lx while its luxmeter \"{}\" is wrong; the model allows {:.1f}",
+                         rig_.points[*point].name, lux, rig_.luxmeters[m].name, allowed));
+  }
+}
+
+void ShowRules::look_at_verdicts(double at_s, const Instant& instant) {
+  const bool believable = lying_.empty() && !strange_ && (!lied_s_ || at_s - *lied_s_ > kAfterLie_s) &&
+                          (!strange_s_ || at_s - *strange_s_ > kAfterLie_s);
+  if (!believable || instant.status->phase != Phase::holding || instant.status->blackout) {
+    wrong_since_s_.clear();
+    return;
+  }
+  for (std::size_t p = 0; p < instant.lux.size(); ++p) {
+    const PointStatus& point = instant.status->points[p];
+    const bool wrong =
+        point.met() && point.goal_lx && *point.goal_lx > 0 &&
+        std::abs(instant.lux[p] - *point.goal_lx) > kCalledMet * rig_.control.goal_tolerance * *point.goal_lx;
+    if (!wrong) {
+      wrong_since_s_.erase(p);
+      continue;
+    }
+    const double since_s = wrong_since_s_.try_emplace(p, at_s).first->second;
+    if (at_s - since_s > kWrongFor_s)
+      broken(met, at_s,
+             fmt::format("{} is called met; its goal is {:.4g} lx, and it gets {:.4g} lx", rig_.points[p].name,
+                         *point.goal_lx, instant.lux[p]));
+  }
+}
+
+void ShowRules::look_at_blackout(double at_s, const Instant& instant) {
+  if (!dark_) return;
+  if (at_s - *dark_since_s_ < kUntilDark_s) return;
+  for (std::size_t f = 0; f < instant.level.size(); ++f)
+    if (instant.level[f] > 0)
+      broken(dark, at_s, fmt::format("{} is sent level {:.3f} in a blackout", rig_.fixtures[f].name, instant.level[f]));
+  if (instant.status->phase == Phase::moving || instant.status->plan_waits) {
+    dark_joints_.clear();  // a movement goes on
+    return;
+  }
+  if (dark_joints_.empty() && at_s - *dark_since_s_ > 1) dark_joints_ = instant.joints;
+  for (std::size_t f = 0; f < dark_joints_.size(); ++f) {
+    const double turned_rad = std::max(std::abs(instant.joints[f].pan_rad - dark_joints_[f].pan_rad),
+                                       std::abs(instant.joints[f].tilt_rad - dark_joints_[f].tilt_rad));
+    if (turned_rad > rad_from_deg(1))
+      broken(dark, at_s,
+             fmt::format("{} turns by {:.1f}° in a blackout", rig_.fixtures[f].name, deg_from_rad(turned_rad)));
+  }
+}
+
+void ShowRules::look_at_hands(double at_s, const Instant& instant) {
+  for (auto hand = hands_.begin(); hand != hands_.end();) {
+    if (hand->second.until_s && at_s >= *hand->second.until_s - kTick_s) {
+      hand = hands_.erase(hand);
+      continue;
+    }
+    const auto& [f, held] = *hand;
+    const bool listed =
+        std::any_of(instant.status->by_hand.begin(), instant.status->by_hand.end(),
+                    [f = f](const ByHand& one) { return one.what == ByHand::What::level && one.index == f; });
+    if (at_s - held.since_s > 1 && !listed)
+      broken(
+          by_hand, at_s,
+          fmt::format("{} was set to level {:.3g} by hand, and is no longer held", rig_.fixtures[f].name, held.level));
+    // Limits may hold it lower. Failures and blackouts override it while they last.
+    if (at_s - held.since_s > kHandWithin_s && instant.status->phase == Phase::holding && !dark_ &&
+        instant.level[f] > held.level + kLevelStep)
+      broken(by_hand, at_s,
+             fmt::format("{} was set to level {:.3g} by hand, and is sent {:.3g}", rig_.fixtures[f].name, held.level,
+                         instant.level[f]));
+    ++hand;
+  }
+}
+
+void ShowRules::look_at_zones(double at_s, const Instant& instant) {
+  for (const std::size_t f : zones_.heads()) {
+    if (!(instant.level[f] > 0)) continue;
+    if (const auto zone = zones_.met(f, instant.joints[f]))
+      broken(keep_out, at_s,
+             fmt::format("{} is lit at level {:.3f} and looks into \"{}\"", rig_.fixtures[f].name, instant.level[f],
+                         zones_.name(*zone)));
+  }
+}
+
+}  // namespace luxrig::scenario

@@ -1,0 +1,86 @@
+#pragma once
+/// What must hold in every show, without being written. Judged by the truth of the simulated rig and by what was sent.
+///
+///   1 No output exceeds a limit: of a fixture, or of the light at a point (while the rig can know its lamps' light).
+///   2 Light does not jump, unless a person or the loss of the daemon made it.
+///   3 The output cycle never waits.
+///   4 What was acknowledged survives: blackout and what is held by hand, after every restart.
+///   5 A wrong meter cannot drive the light up beyond what the model allows.
+///   6 Nothing is called met that is not: while the show holds its look, and no meter lies.
+///   7 A blackout is dark, and turns no head.
+///   8 What a person holds by hand stays, within limits.
+///   9 No beam is lit that meets a keep-out zone.
+///  10 A daemon that ends in order leaves the safe look.
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/output/keep_out.h"
+#include "core/rig/rig.h"
+#include "sim/faults/faults.h"
+#include "tools/scenario/condition.h"
+#include "tools/scenario/outcome.h"
+
+namespace luxrig::scenario {
+
+class ShowRules {
+ public:
+  /// The rig must outlive it.
+  explicit ShowRules(const Rig& rig);
+
+  /// A person commanded something, or the daemon has gone or come: light may jump for a moment.
+  void disturbed(double at_s);
+  void blackout(double at_s, bool on);
+  void held_by_hand(double at_s, std::size_t fixture, double level, std::optional<double> for_s);
+  void released();
+  /// From now on, or no longer, this meter does not show its light.
+  void meter_lies(double at_s, std::size_t luxmeter, bool lies);
+  /// The light at the truth's points is not that of lamps and file alone: a person in it, other daylight.
+  void light_is_strange(double at_s, bool strange);
+  /// A fixture that cannot answer does not get what it is sent: nobody can know its light.
+  void fixture_is_deaf(double at_s, bool deaf);
+  void daemon_gone(double at_s, const ShowStatus& last);
+  void daemon_back(double at_s, const ShowStatus& first);
+  void ended_in_order(double at_s, const std::vector<double>& level);
+
+  /// Every instant while a daemon runs. sent: whether each bus has just been written to.
+  void look(double at_s, const Instant& instant, const std::vector<bool>& sent);
+
+  /// One per rule.
+  [[nodiscard]] std::vector<Judged> end() const { return judged_; }
+
+ private:
+  enum Rule { limits, jumps, waits, survives, wrong_meter, met, dark, by_hand, keep_out, safe_at_end, rules };
+  void broken(Rule rule, double at_s, std::string found);
+  void look_at_limits(double at_s, const Instant& instant);
+  void look_at_jumps(double at_s, const Instant& instant);
+  void look_at_meters(double at_s, const Instant& instant);
+  void look_at_verdicts(double at_s, const Instant& instant);
+  void look_at_blackout(double at_s, const Instant& instant);
+  void look_at_hands(double at_s, const Instant& instant);
+  void look_at_zones(double at_s, const Instant& instant);
+
+  const Rig& rig_;
+  KeepOutZones zones_;
+  std::vector<Judged> judged_;
+  double max_step_ = 0;
+  std::optional<double> disturbed_s_, dark_since_s_, strange_s_, lied_s_;
+  bool strange_ = false, dark_ = false;
+  int deaf_ = 0;
+  std::optional<double> deaf_s_;
+  std::vector<double> before_;           ///< levels of the last instant
+  std::vector<double> last_sent_s_;      ///< per bus
+  std::vector<Joints> dark_joints_;      ///< of heads when it went dark
+  std::map<std::size_t, double> lying_;  ///< luxmeters: true lux at its point when it began to lie
+  struct Hand {
+    double level = 0, since_s = 0;
+    std::optional<double> until_s;
+  };
+  std::map<std::size_t, Hand> hands_;  ///< fixtures
+  std::optional<ShowStatus> gone_with_;
+  std::map<std::size_t, double> wrong_since_s_;  ///< points called met that are not
+};
+
+}  // namespace luxrig::scenario

@@ -1,0 +1,23 @@
+#pragma once
+/// One run of a scenario in this process: the daemon itself, on a simulated rig without wires, under a clock that is
+/// stepped by 20 ms. The same scenario, rig and seed give the same outcome, bit for bit. One at a time in a process:
+/// the clock is the process's own.
+
+#include "tools/scenario/outcome.h"
+#include "tools/scenario/prepared_rig.h"
+#include "tools/scenario/scenario.h"
+
+namespace luxrig::scenario {
+
+struct ShowOptions {
+  bool trace = false;            ///< record Outcome::trace
+  bool answers_expected = true;  ///< a command that is refused or accepted against its `refused` is an error
+};
+
+/// Faults that a rig without wires has no part for; a scenario with one has to be run on the wire.
+[[nodiscard]] bool acts_without_wires(sim::FaultKind fault);
+
+[[nodiscard]] Outcome run_stepped(const PreparedRig& rig, const Scenario& scenario, std::uint64_t seed,
+                                  const ShowOptions& options = {});
+
+}  // namespace luxrig::scenario
