@@ -2,7 +2,7 @@
 // be shown to a person.
 #include <cstdint>
 
-#include "core/rig/personality/gdtf_file.h"
+#include "core/rig/personality/gdtf/gdtf_file.h"
 #include "tests/fuzz/personality_properties.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

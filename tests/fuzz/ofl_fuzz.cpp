@@ -1,7 +1,7 @@
 // Any bytes as an Open Fixture Library file: the same properties as for GDTF descriptions.
 #include <cstdint>
 
-#include "core/rig/personality/ofl_file.h"
+#include "core/rig/personality/ofl/ofl_file.h"
 #include "tests/fuzz/personality_properties.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -1,7 +1,7 @@
 // Any bytes as the zip archive of a GDTF or MVR file: entries stay within their bounds, or are refused.
 #include <cstdint>
 
-#include "core/rig/personality/gdtf_file.h"
+#include "core/rig/personality/gdtf/gdtf_file.h"
 #include "core/rig/personality/zip_archive.h"
 #include "tests/fuzz/personality_properties.h"
 

@@ -25,6 +25,7 @@ constexpr double kCalledMet = 2;
 constexpr double kOffModel = 1.25;
 /// A fixture that hears again gets more light than meters asked for; a sample corrects that.
 constexpr double kHearsAgain_s = 15;
+constexpr double kLongestTurn_s = 30;
 constexpr double kHandWithin_s = 15, kLevelStep = 0.002;
 
 constexpr const char* kSentences[] = {
@@ -65,6 +66,8 @@ void ShowRules::broken(Rule rule, double at_s, std::string found) {
 }
 
 void ShowRules::disturbed(double at_s) { disturbed_s_ = at_s; }
+
+void ShowRules::heads_may_turn(double at_s) { turning_s_ = at_s; }
 
 void ShowRules::blackout(double at_s, bool on) {
   disturbed(at_s);
@@ -235,7 +238,8 @@ void ShowRules::look_at_blackout(double at_s, const Instant& instant) {
   for (std::size_t f = 0; f < instant.level.size(); ++f)
     if (instant.level[f] > 0)
       broken(dark, at_s, fmt::format("{} is sent level {:.3f} in a blackout", rig_.fixtures[f].name, instant.level[f]));
-  if (instant.status->phase == Phase::moving || instant.status->plan_waits) {
+  const bool turning = turning_s_ && at_s - *turning_s_ < kLongestTurn_s;
+  if (turning || instant.status->phase == Phase::moving || instant.status->plan_waits) {
     dark_joints_.clear();  // a movement goes on
     return;
   }

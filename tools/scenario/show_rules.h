@@ -32,6 +32,8 @@ class ShowRules {
 
   /// A person commanded something, or the daemon has gone or come: light may jump for a moment.
   void disturbed(double at_s);
+  /// A person commanded something that may turn heads.
+  void heads_may_turn(double at_s);
   void blackout(double at_s, bool on);
   void held_by_hand(double at_s, std::size_t fixture, double level, std::optional<double> for_s);
   void released();
@@ -69,7 +71,7 @@ class ShowRules {
   std::optional<double> disturbed_s_, dark_since_s_, strange_s_, lied_s_;
   bool strange_ = false, dark_ = false;
   int deaf_ = 0;
-  std::optional<double> deaf_s_;
+  std::optional<double> deaf_s_, turning_s_;
   std::vector<double> before_;           ///< levels of the last instant
   std::vector<double> last_sent_s_;      ///< per bus
   std::vector<Joints> dark_joints_;      ///< of heads when it went dark

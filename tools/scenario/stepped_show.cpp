@@ -181,6 +181,7 @@ class SteppedShow {
     daemon_->tick();
     if (!first) rules_.daemon_back(seconds(), daemon_->status());
     rules_.disturbed(seconds());
+    rules_.heads_may_turn(seconds());
   }
 
   void end_daemon(const Event& event) {
@@ -331,6 +332,8 @@ class SteppedShow {
     log(event.name.empty() ? text_of(event) : fmt::format("{} ({})", event.name, text_of(event)));
     const bool is_command = event.what <= What::end_bypass;
     if (is_command) rules_.disturbed(seconds());
+    if (event.what == What::apply || event.what == What::park || event.what == What::release)
+      rules_.heads_may_turn(seconds());
     switch (event.what) {
       case What::apply: {
         std::string plan = to_json(prepared_.plan);

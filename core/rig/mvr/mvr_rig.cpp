@@ -8,7 +8,7 @@
 
 #include "core/rig/mvr/free_addresses.h"
 #include "core/rig/mvr/mvr_scenery.h"
-#include "core/rig/personality/gdtf_file.h"
+#include "core/rig/personality/gdtf/gdtf_file.h"
 #include "core/rig/reading/mode_slots.h"
 #include "core/text/plain_text.h"
 

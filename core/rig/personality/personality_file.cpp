@@ -2,8 +2,8 @@
 
 #include <fstream>
 
-#include "core/rig/personality/gdtf_file.h"
-#include "core/rig/personality/ofl_file.h"
+#include "core/rig/personality/gdtf/gdtf_file.h"
+#include "core/rig/personality/ofl/ofl_file.h"
 #include "core/rig/personality/zip_archive.h"
 
 namespace luxrig {

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/scene/mesh/files_beside.h"
-#include "core/scene/mesh/gltf_file.h"
+#include "core/scene/mesh/gltf/gltf_file.h"
 #include "core/scene/mesh/mesh_reading.h"
 #include "core/scene/mesh/obj_file.h"
 #include "core/scene/mesh/ply_file.h"

@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "tests/core/rig/listed_problems.h"
 #include "tests/folders.h"
+#include "tools/scenario/explore.h"
 #include "tools/scenario/jobs.h"
 #include "tools/scenario/outcome_text.h"
 #include "tools/scenario/scenario_file.h"
@@ -46,6 +48,29 @@ TEST(SteppedShow, ASolvedRigReachesItsGoalsAndKeepsWhatAlwaysHolds) {
       "[[expect]]\nreached = \"phase holding\"\nwithin_s = 25\n[[expect]]\nalways = \"lux fern <= 50\"\n"
       "[[expect]]\nat_end = \"missed == 0\"\n");
   EXPECT_EQ(failed(run_stepped(gallery(), scenario, 1)), "");
+}
+
+/// The scenario in rigs/README.md, as a reader would copy it.
+TEST(SteppedShow, TheExampleForReadersPasses) {
+  std::ifstream page(test::source_folder() / "rigs/README.md");
+  std::string text, line;
+  while (std::getline(page, line) && line != "```toml") {
+  }
+  while (std::getline(page, line) && line != "```") text += line + "\n";
+  const auto scenario = parse_scenario(text, "README.md", gallery().session->rig);
+  ASSERT_TRUE(scenario.has_value()) << text << test::listed(scenario.error());
+  EXPECT_EQ(scenario->expectations.size(), 2U);
+  EXPECT_EQ(failed(run_stepped(gallery(), *scenario, 1)), "");
+}
+
+TEST(SteppedShow, ARandomShowIsTheSameAsItsFile) {
+  const Rig& rig = gallery().session->rig;
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    const Scenario show = random_show(rig, seed, 60);
+    const auto read = parse_scenario(to_toml(show), show.file, rig);
+    ASSERT_TRUE(read.has_value()) << to_toml(show) << test::listed(read.error());
+    EXPECT_EQ(to_toml(*read), to_toml(show));
+  }
 }
 
 TEST(SteppedShow, WhatIsNotSoFails) {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <fstream>
 
-#include "core/rig/personality/gdtf_file.h"
-#include "core/rig/personality/ofl_file.h"
+#include "core/rig/personality/gdtf/gdtf_file.h"
+#include "core/rig/personality/ofl/ofl_file.h"
 #include "core/rig/reading/mode_slots.h"
 #include "core/rig/rig_file.h"
 #include "tests/folders.h"

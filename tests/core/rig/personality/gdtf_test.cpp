@@ -6,7 +6,7 @@
 #include <random>
 
 #include "core/rig/personality/dmx_value.h"
-#include "core/rig/personality/gdtf_file.h"
+#include "core/rig/personality/gdtf/gdtf_file.h"
 #include "core/rig/personality/personality_file.h"
 #include "core/text/plain_text.h"
 #include "tests/folders.h"

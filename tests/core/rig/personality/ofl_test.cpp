@@ -5,7 +5,7 @@
 #include <fstream>
 #include <random>
 
-#include "core/rig/personality/ofl_file.h"
+#include "core/rig/personality/ofl/ofl_file.h"
 #include "core/rig/personality/personality_file.h"
 #include "core/text/plain_text.h"
 #include "tests/folders.h"

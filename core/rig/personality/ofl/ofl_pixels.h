@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/rig/personality/ofl_json.h"
+#include "core/rig/personality/ofl/ofl_json.h"
 
 namespace luxrig {
 

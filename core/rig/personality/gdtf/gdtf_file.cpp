@@ -1,10 +1,10 @@
-#include "core/rig/personality/gdtf_file.h"
+#include "core/rig/personality/gdtf/gdtf_file.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "core/rig/personality/gdtf_modes.h"
+#include "core/rig/personality/gdtf/gdtf_modes.h"
 #include "core/rig/personality/zip_archive.h"
 #include "core/text/plain_text.h"
 

@@ -1,4 +1,4 @@
-#include "core/rig/personality/ofl_pixels.h"
+#include "core/rig/personality/ofl/ofl_pixels.h"
 
 #include <fmt/format.h>
 

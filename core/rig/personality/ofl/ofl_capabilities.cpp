@@ -1,4 +1,4 @@
-#include "core/rig/personality/ofl_capabilities.h"
+#include "core/rig/personality/ofl/ofl_capabilities.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "core/scene/mesh/gltf_accessors.h"
+#include "core/scene/mesh/gltf/gltf_accessors.h"
 
 #include <algorithm>
 #include <array>

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/scene/mesh/gltf_accessors.h"
+#include "core/scene/mesh/gltf/gltf_accessors.h"
 #include "core/scene/mesh/polygon_mesh.h"
 
 namespace luxrig {

@@ -1,4 +1,4 @@
-#include "core/rig/personality/gdtf_modes.h"
+#include "core/rig/personality/gdtf/gdtf_modes.h"
 
 #include <fmt/format.h>
 
@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "core/rig/personality/dmx_value.h"
-#include "core/rig/personality/gdtf_functions.h"
-#include "core/rig/personality/gdtf_geometry.h"
+#include "core/rig/personality/gdtf/gdtf_functions.h"
+#include "core/rig/personality/gdtf/gdtf_geometry.h"
 #include "core/rig/personality/slot_overlap.h"
 #include "core/text/plain_text.h"
 

@@ -1,11 +1,11 @@
-#include "core/scene/mesh/gltf_file.h"
+#include "core/scene/mesh/gltf/gltf_file.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "core/scene/mesh/gltf_accessors.h"
-#include "core/scene/mesh/gltf_materials.h"
+#include "core/scene/mesh/gltf/gltf_accessors.h"
+#include "core/scene/mesh/gltf/gltf_materials.h"
 #include "core/text/plain_text.h"
 
 namespace luxrig {

@@ -1,4 +1,4 @@
-#include "core/scene/mesh/gltf_materials.h"
+#include "core/scene/mesh/gltf/gltf_materials.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "core/rig/personality/ofl_file.h"
+#include "core/rig/personality/ofl/ofl_file.h"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,8 @@
 #include <unordered_map>
 #include <utility>
 
-#include "core/rig/personality/ofl_capabilities.h"
-#include "core/rig/personality/ofl_pixels.h"
+#include "core/rig/personality/ofl/ofl_capabilities.h"
+#include "core/rig/personality/ofl/ofl_pixels.h"
 #include "core/rig/personality/slot_overlap.h"
 #include "core/text/plain_text.h"
 

@@ -1,4 +1,4 @@
-#include "core/rig/personality/ofl_json.h"
+#include "core/rig/personality/ofl/ofl_json.h"
 
 #include <cmath>
 

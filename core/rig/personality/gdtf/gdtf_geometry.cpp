@@ -1,4 +1,4 @@
-#include "core/rig/personality/gdtf_geometry.h"
+#include "core/rig/personality/gdtf/gdtf_geometry.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "core/rig/personality/gdtf_functions.h"
+#include "core/rig/personality/gdtf/gdtf_functions.h"
 
 #include <fmt/format.h>
 

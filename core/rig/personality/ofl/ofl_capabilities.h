@@ -1,7 +1,7 @@
 #pragma once
 /// The capabilities of an Open Fixture Library channel, as functions. Private to core/rig/personality.
 
-#include "core/rig/personality/ofl_json.h"
+#include "core/rig/personality/ofl/ofl_json.h"
 #include "core/rig/personality/personality.h"
 #include "core/rig/problem_list.h"
 
