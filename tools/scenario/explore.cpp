@@ -9,6 +9,7 @@
 #include <map>
 #include <random>
 
+#include "tools/scenario/desk.h"
 #include "tools/scenario/jobs.h"
 #include "tools/scenario/stepped_show.h"
 
@@ -29,6 +30,8 @@ class ShowDrawer {
     for (const Luxmeter& meter : rig.luxmeters) meters_.push_back(meter.name);
     for (const Point& point : rig.points) points_.push_back(point.name);
     for (const Bus& bus : rig.buses) buses_.push_back(bus.name);
+    for (std::size_t f = 0; f < rig.fixtures.size(); ++f)
+      if (desk_rules(rig.buses[rig.fixtures[f].bus])) desk_fixtures_.push_back(f);
   }
 
   std::vector<Event> events() {
@@ -65,6 +68,18 @@ class ShowDrawer {
       What what;
       std::size_t weight;
     };
+    if (!desk_fixtures_.empty() && below(5) == 0) {
+      event.what = What::desk;
+      event.which = {desk_fixtures_[below(desk_fixtures_.size())]};
+      event.on = {fixtures_[event.which[0]]};
+      event.value = tenths(0, 1);
+      event.for_s = tenths(1, 30);
+      if (rig_.fixtures[event.which[0]].moves) {
+        event.pan_rad = rad_from_deg(tenths(-180, 180));
+        event.tilt_rad = rad_from_deg(tenths(-90, 90));
+      }
+      return event;
+    }
     constexpr Chance chances[] = {{What::blackout, 3}, {What::level, 4}, {What::goal, 3},   {What::release, 1},
                                   {What::apply, 2},    {What::park, 1},  {What::bypass, 2}, {What::cover, 2},
                                   {What::shade, 2},    {What::stop, 1},  {What::kill, 2},   {What::power_cut, 1}};
@@ -124,6 +139,7 @@ class ShowDrawer {
   std::mt19937_64 random_;
   std::vector<sim::FaultKind> faults_;
   std::vector<std::string> fixtures_, meters_, points_, buses_;
+  std::vector<std::size_t> desk_fixtures_;  ///< on a bus that listens to a desk
 };
 
 /// The rule that a run broke; empty if none. A refused command is no failure here.
@@ -252,6 +268,8 @@ std::string to_toml(const Scenario& scenario) {
     if (!event.on.empty()) out += fmt::format("on = {}\n", names_of(event.on));
     if (event.value) out += fmt::format("value = {}\n", *event.value);
     if (event.for_s) out += fmt::format("for_s = {}\n", *event.for_s);
+    if (event.pan_rad) out += fmt::format("pan_deg = {:.10g}\n", deg_from_rad(*event.pan_rad));
+    if (event.tilt_rad) out += fmt::format("tilt_deg = {:.10g}\n", deg_from_rad(*event.tilt_rad));
     if (event.plan) out += fmt::format("plan = {}\n", quoted(event.plan->string()));
     if (event.refused) out += "refused = true\n";
   }

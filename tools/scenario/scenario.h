@@ -53,6 +53,7 @@ struct Event {
     park,
     bypass,
     end_bypass,
+    desk,
     cover,
     shade,
     daylight,
@@ -69,8 +70,9 @@ struct Event {
   What what = What::apply;
   sim::FaultKind fault = sim::FaultKind::silent;
   std::vector<std::string> on;     ///< names; for faults devices of the rig
-  std::vector<std::size_t> which;  ///< cover: luxmeters; shade: points
+  std::vector<std::size_t> which;  ///< desk: fixtures; cover: luxmeters; shade: points
   std::optional<double> value, for_s;
+  std::optional<double> pan_rad, tilt_rad;  ///< desk
   std::optional<std::filesystem::path> plan;
   bool refused = false;  ///< the command has to be refused; else it has to be accepted
   FilePosition in_file;

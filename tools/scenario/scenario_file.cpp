@@ -11,6 +11,7 @@
 #include "core/text/nearest.h"
 #include "sim/world/deviations_text.h"
 #include "tools/scenario/condition.h"
+#include "tools/scenario/desk.h"
 
 namespace luxrig::scenario {
 namespace {
@@ -38,6 +39,7 @@ constexpr Needs kNeeds[] = {
     {What::park, Needs::On::may, Needs::Value::none, 0, 0, false, "fixtures"},
     {What::bypass, Needs::On::must, Needs::Value::none, 0, 0, true, "fixtures and luxmeters"},
     {What::end_bypass, Needs::On::must, Needs::Value::none, 0, 0, false, "fixtures and luxmeters"},
+    {What::desk, Needs::On::must, Needs::Value::must, 0, 1, true, "fixtures on a bus that listens to a desk"},
     {What::cover, Needs::On::must, Needs::Value::must, 0, 1, true, "luxmeters"},
     {What::shade, Needs::On::must, Needs::Value::must, 0, 1, true, "points"},
     {What::daylight, Needs::On::none, Needs::Value::must, 0, 1000, true, ""},
@@ -150,6 +152,8 @@ class ScenarioReader {
     s.read("for_s", event.for_s);
     s.refuse("plan", "plan has no effect: only do = \"apply\" takes one", "remove it");
     s.refuse("refused", "nobody can refuse a fault", "remove it");
+    for (const char* key : {"pan_deg", "tilt_deg"})
+      s.refuse(key, fmt::format("{} has no effect: only a desk turns heads", key), "remove it");
     std::vector<std::string> known;
     add_names(rig_.fixtures, known);
     add_names(rig_.luxmeters, known);
@@ -189,6 +193,8 @@ class ScenarioReader {
     if (event.what == What::level || event.what == What::release || event.what == What::park || is_bypass(event.what))
       add_names(rig_.fixtures, known);
     if (event.what == What::cover || is_bypass(event.what)) add_names(rig_.luxmeters, known);
+    if (event.what == What::desk)
+      for (const Fixture& fixture : rig_.fixtures) known.push_back(fixture.name);
     read_names(s, event, known, needs);
     if (needs.value == Needs::Value::none) {
       s.refuse("value", fmt::format("value has no effect on {}", action), "remove it");
@@ -206,6 +212,22 @@ class ScenarioReader {
     std::string plan;
     if (event.what != What::apply) s.refuse("plan", "plan has no effect: only do = \"apply\" takes one", "remove it");
     if (s.read("plan", plan) && event.what == What::apply) event.plan = folder_ / plan;
+    if (event.what == What::desk) {
+      for (const std::size_t f : event.which)
+        if (!desk_rules(rig_.buses[rig_.fixtures[f].bus])) {
+          problems_.add(s.place_of("on"),
+                        fmt::format("bus {} of fixture {} listens to no desk",
+                                    in_quotes(rig_.buses[rig_.fixtures[f].bus].name), in_quotes(rig_.fixtures[f].name)),
+                        "give the bus `input` in the rig file");
+          break;
+        }
+      double pan_rad = 0, tilt_rad = 0;
+      if (s.read_deg("pan_deg", pan_rad)) event.pan_rad = pan_rad;
+      if (s.read_deg("tilt_deg", tilt_rad)) event.tilt_rad = tilt_rad;
+    } else {
+      for (const char* key : {"pan_deg", "tilt_deg"})
+        s.refuse(key, fmt::format("{} has no effect: only a desk turns heads", key), "remove it");
+    }
     if (event.what == What::daylight && !rig_.daylight)
       problems_.add(s.place_of("do"), "this rig has no daylight", "add [daylight] to the rig file");
   }
@@ -223,7 +245,8 @@ class ScenarioReader {
       for (std::size_t i = 0; i < known.size(); ++i) {
         if (known[i] != pattern && fnmatch(pattern.c_str(), known[i].c_str(), 0) != 0) continue;
         event.on.push_back(known[i]);
-        if (event.what == What::cover || event.what == What::shade) event.which.push_back(i);
+        if (event.what == What::cover || event.what == What::shade || event.what == What::desk)
+          event.which.push_back(i);
       }
       if (event.on.size() > before) continue;
       const std::vector<std::string_view> views(known.begin(), known.end());
@@ -310,6 +333,8 @@ const char* name_of(Event::What what) {
       return "bypass";
     case What::end_bypass:
       return "end_bypass";
+    case What::desk:
+      return "desk";
     case What::cover:
       return "cover";
     case What::shade:

@@ -25,7 +25,7 @@ constexpr double kCalledMet = 2;
 constexpr double kOffModel = 1.25;
 /// A fixture that hears again gets more light than meters asked for; a sample corrects that.
 constexpr double kHearsAgain_s = 15;
-constexpr double kLongestTurn_s = 30;
+constexpr double kLongestTurn_s = 30, kAfterDesk_s = 20;
 constexpr double kHandWithin_s = 15, kLevelStep = 0.002;
 
 constexpr const char* kSentences[] = {
@@ -66,6 +66,15 @@ void ShowRules::broken(Rule rule, double at_s, std::string found) {
 }
 
 void ShowRules::disturbed(double at_s) { disturbed_s_ = at_s; }
+
+void ShowRules::desk(double at_s, bool there) {
+  desk_ = there;
+  desk_s_ = at_s;
+}
+
+bool ShowRules::deaf_lately(double at_s) const { return deaf_ > 0 || (deaf_s_ && at_s - *deaf_s_ < kHearsAgain_s); }
+
+bool ShowRules::desk_lately(double at_s) const { return desk_ || (desk_s_ && at_s - *desk_s_ < kAfterDesk_s); }
 
 void ShowRules::heads_may_turn(double at_s) { turning_s_ = at_s; }
 
@@ -128,6 +137,7 @@ void ShowRules::daemon_back(double at_s, const ShowStatus& first) {
 }
 
 void ShowRules::ended_in_order(double at_s, const std::vector<double>& level) {
+  if (desk_lately(at_s)) return;  // its light is what goes out
   for (std::size_t f = 0; f < level.size(); ++f) {
     const Fixture& fixture = rig_.fixtures[f];
     const double safe =
@@ -166,7 +176,7 @@ void ShowRules::look_at_limits(double at_s, const Instant& instant) {
           fmt::format("{} is sent level {:.3f}, its highest is {:.3f}", rig_.fixtures[f].name, instant.level[f], most));
   }
   if (strange_) return;  // daylight is nobody's output, and who shades a meter raises its lamps
-  if (deaf_ > 0 || (deaf_s_ && at_s - *deaf_s_ < kHearsAgain_s)) return;
+  if (deaf_lately(at_s)) return;
   for (std::size_t p = 0; p < instant.lux.size(); ++p) {
     if (!rig_.points[p].max_lx) continue;
     double tolerance = kLimitSlack;
@@ -180,7 +190,7 @@ void ShowRules::look_at_limits(double at_s, const Instant& instant) {
 }
 
 void ShowRules::look_at_jumps(double at_s, const Instant& instant) {
-  if (before_.empty() || (disturbed_s_ && at_s - *disturbed_s_ <= kDisturbance_s)) return;
+  if (before_.empty() || desk_lately(at_s) || (disturbed_s_ && at_s - *disturbed_s_ <= kDisturbance_s)) return;
   for (std::size_t f = 0; f < instant.level.size(); ++f) {
     if (rig_.fixtures[f].switched) continue;
     const double step = std::abs(instant.level[f] - before_[f]);
@@ -200,7 +210,8 @@ void ShowRules::look_at_meters(double at_s, const Instant& instant) {
     const double least_gain = rig_.control.gain_min * (1 - rig_.limits.open_loop_margin);
     const double allowed =
         std::max(honest_lx, goal_or_limit_lx(rig_, *point, *instant.status)) / least_gain * kOffModel + 1;
-    const bool by_hand_lately = !hands_.empty() || (disturbed_s_ && at_s - *disturbed_s_ < kHandWithin_s);
+    const bool by_hand_lately =
+        !hands_.empty() || desk_lately(at_s) || (disturbed_s_ && at_s - *disturbed_s_ < kHandWithin_s);
     if (!strange_ && lux > allowed && !by_hand_lately)
       broken(wrong_meter, at_s,
              fmt::format("{} gets {:.1f} lx while its luxmeter \"{}\" is wrong; the model allows {:.1f}",
@@ -209,7 +220,8 @@ void ShowRules::look_at_meters(double at_s, const Instant& instant) {
 }
 
 void ShowRules::look_at_verdicts(double at_s, const Instant& instant) {
-  const bool believable = lying_.empty() && !strange_ && (!lied_s_ || at_s - *lied_s_ > kAfterLie_s) &&
+  const bool believable = lying_.empty() && !desk_lately(at_s) && !strange_ &&
+                          (!lied_s_ || at_s - *lied_s_ > kAfterLie_s) &&
                           (!strange_s_ || at_s - *strange_s_ > kAfterLie_s);
   if (!believable || instant.status->phase != Phase::holding || instant.status->blackout) {
     wrong_since_s_.clear();
@@ -238,7 +250,7 @@ void ShowRules::look_at_blackout(double at_s, const Instant& instant) {
   for (std::size_t f = 0; f < instant.level.size(); ++f)
     if (instant.level[f] > 0)
       broken(dark, at_s, fmt::format("{} is sent level {:.3f} in a blackout", rig_.fixtures[f].name, instant.level[f]));
-  const bool turning = turning_s_ && at_s - *turning_s_ < kLongestTurn_s;
+  const bool turning = desk_lately(at_s) || (turning_s_ && at_s - *turning_s_ < kLongestTurn_s);
   if (turning || instant.status->phase == Phase::moving || instant.status->plan_waits) {
     dark_joints_.clear();  // a movement goes on
     return;
@@ -269,7 +281,7 @@ void ShowRules::look_at_hands(double at_s, const Instant& instant) {
           fmt::format("{} was set to level {:.3g} by hand, and is no longer held", rig_.fixtures[f].name, held.level));
     // Limits may hold it lower. Failures and blackouts override it while they last.
     if (at_s - held.since_s > kHandWithin_s && instant.status->phase == Phase::holding && !dark_ &&
-        instant.level[f] > held.level + kLevelStep)
+        !desk_lately(at_s) && instant.level[f] > held.level + kLevelStep)
       broken(by_hand, at_s,
              fmt::format("{} was set to level {:.3g} by hand, and is sent {:.3g}", rig_.fixtures[f].name, held.level,
                          instant.level[f]));
@@ -278,6 +290,7 @@ void ShowRules::look_at_hands(double at_s, const Instant& instant) {
 }
 
 void ShowRules::look_at_zones(double at_s, const Instant& instant) {
+  if (deaf_lately(at_s)) return;  // nobody knows where such a head looks
   for (const std::size_t f : zones_.heads()) {
     if (!(instant.level[f] > 0)) continue;
     if (const auto zone = zones_.met(f, instant.joints[f]))

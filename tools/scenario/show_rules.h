@@ -32,6 +32,8 @@ class ShowRules {
 
   /// A person commanded something, or the daemon has gone or come: light may jump for a moment.
   void disturbed(double at_s);
+  /// A lighting desk shares control, or no longer does: it may do as it likes, within limits.
+  void desk(double at_s, bool there);
   /// A person commanded something that may turn heads.
   void heads_may_turn(double at_s);
   void blackout(double at_s, bool on);
@@ -56,6 +58,9 @@ class ShowRules {
  private:
   enum Rule { limits, jumps, waits, survives, wrong_meter, met, dark, by_hand, keep_out, safe_at_end, rules };
   void broken(Rule rule, double at_s, std::string found);
+  /// A desk shares control, or has until a moment ago.
+  [[nodiscard]] bool desk_lately(double at_s) const;
+  [[nodiscard]] bool deaf_lately(double at_s) const;
   void look_at_limits(double at_s, const Instant& instant);
   void look_at_jumps(double at_s, const Instant& instant);
   void look_at_meters(double at_s, const Instant& instant);
@@ -69,9 +74,9 @@ class ShowRules {
   std::vector<Judged> judged_;
   double max_step_ = 0;
   std::optional<double> disturbed_s_, dark_since_s_, strange_s_, lied_s_;
-  bool strange_ = false, dark_ = false;
+  bool strange_ = false, dark_ = false, desk_ = false;
   int deaf_ = 0;
-  std::optional<double> deaf_s_, turning_s_;
+  std::optional<double> deaf_s_, turning_s_, desk_s_;
   std::vector<double> before_;           ///< levels of the last instant
   std::vector<double> last_sent_s_;      ///< per bus
   std::vector<Joints> dark_joints_;      ///< of heads when it went dark

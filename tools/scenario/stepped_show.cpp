@@ -11,6 +11,7 @@
 #include "tools/luxrigd/daemon.h"
 #include "tools/process/clock.h"
 #include "tools/process/files.h"
+#include "tools/scenario/desk.h"
 #include "tools/scenario/judge.h"
 #include "tools/scenario/show_rules.h"
 
@@ -29,16 +30,25 @@ struct Wires {
   std::vector<double> drive;                      ///< per fixture, as last sent
   std::vector<std::optional<double>> reading_lx;  ///< per luxmeter, as last read
   std::vector<bool> sent;                         ///< per bus, since the last look
+  /// Per fixture: what a lighting desk sends for it now; none: no desk does.
+  std::vector<std::optional<DeskCommand>> desk;
 };
 
 /// One bus of the simulated rig.
-class SteppedBus final : public Driver, public LevelOutput, public Mover, public LuxReader {
+class SteppedBus final : public Driver, public LevelOutput, public Mover, public LuxReader, public LevelInput {
  public:
   /// first: it reports the health of all. reads: it reads the luxmeters of all.
   SteppedBus(const Rig& rig, std::size_t bus, sim::InProcessRig& devices, Wires& wires, bool first, bool reads)
-      : devices_(devices), wires_(wires), bus_(bus), first_(first), reads_(reads) {
-    for (const Fixture& fixture : rig.fixtures) {
-      lights_ = lights_ || fixture.bus == bus;
+      : devices_(devices),
+        wires_(wires),
+        bus_(bus),
+        first_(first),
+        reads_(reads),
+        rules_(desk_rules(rig.buses[bus])),
+        name_(rig.buses[bus].name) {
+    for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
+      const Fixture& fixture = rig.fixtures[f];
+      if (fixture.bus == bus) fixtures_.push_back(f);
       moves_ = moves_ || (fixture.moves && fixture.motion_bus() == bus);
     }
   }
@@ -53,16 +63,39 @@ class SteppedBus final : public Driver, public LevelOutput, public Mover, public
   [[nodiscard]] std::vector<Health> health(Time now) const override {
     return first_ ? devices_.health(now) : std::vector<Health>{};
   }
-  LevelOutput* level_output() override { return lights_ ? this : nullptr; }
+  LevelOutput* level_output() override { return fixtures_.empty() ? nullptr : this; }
   Mover* mover() override { return moves_ ? this : nullptr; }
   LuxReader* lux_reader() override { return reads_ ? this : nullptr; }
+  LevelInput* level_input() override { return rules_ ? this : nullptr; }
+
+  [[nodiscard]] DeskRules rules() const override { return *rules_; }
+  [[nodiscard]] std::vector<DeskPart> parts() const override { return {{name_, fixtures_}}; }
+  [[nodiscard]] std::span<const DeskFrame> listen(Time) override {
+    frame_.commands.clear();
+    for (const std::size_t f : fixtures_)
+      if (wires_.desk[f]) frame_.commands.push_back(*wires_.desk[f]);
+    frame_.presence = frame_.commands.empty() ? DeskPresence::absent : DeskPresence::present;
+    if (!frame_.commands.empty()) frame_.source = "desk";
+    return {&frame_, 1};
+  }
+  void set_silent(Time, std::size_t, bool silent) override { silent_ = silent; }
 
   Result<void> write(Time now, std::span<const LevelCommand> commands) override {
     wires_.sent[bus_] = true;
-    for (const LevelCommand& command : commands) wires_.drive[command.fixture] = command.drive;
-    return devices_.write(now, commands);
+    std::vector<LevelCommand> sent(commands.begin(), commands.end());
+    // In standby the desk drives the lamps itself.
+    for (LevelCommand& command : sent)
+      if (const auto& desk = wires_.desk[command.fixture]; silent_ && desk) command.drive = desk->drive;
+    for (const LevelCommand& command : sent) wires_.drive[command.fixture] = command.drive;
+    return devices_.write(now, sent);
   }
-  Result<void> move(Time now, std::span<const AimCommand> commands) override { return devices_.move(now, commands); }
+  Result<void> move(Time now, std::span<const AimCommand> commands) override {
+    std::vector<AimCommand> sent(commands.begin(), commands.end());
+    for (AimCommand& command : sent)
+      if (const auto& desk = wires_.desk[command.fixture]; silent_ && desk && desk->joints)
+        command.joints = *desk->joints;
+    return devices_.move(now, sent);
+  }
   Result<std::vector<LuxReading>> read(Time now) override {
     auto readings = devices_.read(now);
     if (readings)
@@ -74,7 +107,11 @@ class SteppedBus final : public Driver, public LevelOutput, public Mover, public
   sim::InProcessRig& devices_;
   Wires& wires_;
   std::size_t bus_;
-  bool first_, reads_, lights_ = false, moves_ = false;
+  bool first_, reads_, moves_ = false, silent_ = false;
+  std::optional<DeskRules> rules_;
+  std::string name_;
+  std::vector<std::size_t> fixtures_;
+  DeskFrame frame_;
 };
 
 /// A folder in memory for the daemon's state, as long as this lives.
@@ -123,7 +160,8 @@ class SteppedShow {
         rules_(rig_) {
     outcome_.seed = seed;
     wires_ = {std::vector<double>(rig_.fixtures.size(), 0.0), std::vector<std::optional<double>>(rig_.luxmeters.size()),
-              std::vector<bool>(rig_.buses.size(), false)};
+              std::vector<bool>(rig_.buses.size(), false),
+              std::vector<std::optional<DeskCommand>>(rig_.fixtures.size())};
     instant_.lux_hours.assign(rig_.points.size(), 0.0);
     instant_.level.assign(rig_.fixtures.size(), 0.0);
     happened_s_.resize(scenario.events.size());
@@ -368,6 +406,8 @@ class SteppedShow {
       case What::bypass:
       case What::end_bypass:
         return answered(event, handlers_.bypass(event.on, event.what == What::bypass));
+      case What::desk:
+        return desk_sends(event, true);
       case What::cover:
         for (const std::size_t m : event.which) {
           devices_.world().set_cover(m, *event.value);
@@ -400,6 +440,9 @@ class SteppedShow {
         log("end_bypass");
         (void)handlers_.bypass(event.on, false);
         return rules_.disturbed(seconds());
+      case What::desk:
+        log("the desk is lost");
+        return desk_sends(event, false);
       case What::cover:
         log("the meter is free again");
         for (const std::size_t m : event.which) {
@@ -422,6 +465,23 @@ class SteppedShow {
       default:
         return set_faults(event, false);
     }
+  }
+
+  void desk_sends(const Event& event, bool on) {
+    for (const std::size_t f : event.which) {
+      std::optional<DeskCommand>& command = wires_.desk[f];
+      command.reset();
+      if (!on) continue;
+      command = DeskCommand{f, drive_from_level(rig_.fixtures[f].dimmer_curve, *event.value), std::nullopt};
+      if (!rig_.fixtures[f].moves || (!event.pan_rad && !event.tilt_rad)) continue;
+      Joints joints = rig_.fixtures[f].joints;
+      joints.pan_rad = event.pan_rad.value_or(joints.pan_rad);
+      joints.tilt_rad = event.tilt_rad.value_or(joints.tilt_rad);
+      command->joints = joints;
+    }
+    const bool any =
+        std::any_of(wires_.desk.begin(), wires_.desk.end(), [](const auto& one) { return one.has_value(); });
+    rules_.desk(seconds(), any);
   }
 
   void set_faults(const Event& event, bool on) {

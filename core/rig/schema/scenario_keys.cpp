@@ -29,11 +29,12 @@ constexpr KeySpec kScenarioKeys[] = {
     {"event", "fault", text, "", kNone, kAny, "", R"("silent")",
      "a fault of the simulator (`luxrig-sim --help` lists them) for the devices in `on`"},
     {"event", "do", text, "", kNone, kAny,
-     "apply, blackout, lift_blackout, level, goal, release, park, bypass, end_bypass, cover, shade, daylight, stop, "
-     "kill, power_cut",
+     "apply, blackout, lift_blackout, level, goal, release, park, bypass, end_bypass, desk, cover, shade, daylight, "
+     "stop, kill, power_cut",
      R"("level")",
      "apply: the solved plan or `plan`. level, goal: by hand, `value`. release, park, bypass: all, or those in `on`. "
-     "cover: a meter sees `value` of its light. shade: a point and its meter get `value` of the lamps' light. "
+     "desk: a lighting desk sends `value` (and aims) for fixtures on a bus with `input`, until it is lost. cover: a "
+     "meter sees `value` of its light. shade: a point and its meter get `value` of the lamps' light. "
      "daylight: "
      "`value` times that of the rig file. stop: the daemon ends in order; kill: it dies; power_cut: it and all devices "
      "lose power"},
@@ -49,6 +50,8 @@ constexpr KeySpec kScenarioKeys[] = {
      "",
      "30",
      "how long it lasts; left out, to the end. A daemon that ends is started again after it, by default 0.5 s"},
+    {"event", "pan_deg", number, "°", kNone, kAngle, "", "30", "desk: where it turns heads"},
+    {"event", "tilt_deg", number, "°", kNone, kAngle, "", "45", "desk: where it turns heads"},
     {"event", "plan", file, "", kNone, kAny, "", R"("evening.json")", "to apply"},
     {"event", "refused", yes_no, "", "false", kAny, "", "true", "the daemon has to refuse this command"},
 

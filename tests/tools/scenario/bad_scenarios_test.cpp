@@ -114,6 +114,9 @@ constexpr Bad kParts[] = {
     {"[[event]]\nat_s = 1\ndo = \"bypass\"\n", "4:1: [[event]] has no \"on\""},
     {"[[event]]\nat_s = 1\ndo = \"bypass\"\non = [\"work-1\"]\n",
      "7:7: \"work-1\" fits none of the fixtures and luxmeters"},
+    {"[[event]]\nat_s = 1\ndo = \"desk\"\non = [\"spot-1\"]\nvalue = 1\n",
+     "7:6: bus \"track\" of fixture \"spot-1\" listens to no desk"},
+    {"[[event]]\nat_s = 1\ndo = \"blackout\"\npan_deg = 5\n", "7:1: pan_deg has no effect: only a desk turns heads"},
     {"[[event]]\nat_s = 1\ndo = \"kill\"\nrefused = true\n", "7:1: nobody can refuse kill"},
     {"[[event]]\nat_s = 1\ndo = \"park\"\nrefused = 1\n", "7:11: refused must be true or false"},
     // Faults.

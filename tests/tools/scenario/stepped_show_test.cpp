@@ -136,6 +136,34 @@ TEST(SteppedShow, ACoveredMeterAndAPersonInTheLightRaiseNoLimit) {
   EXPECT_EQ(failed(run_stepped(gallery(), scenario, 2)), "");
 }
 
+TEST(SteppedShow, ADeskTakesOverAndTurnsAHeadThatStaysDarkWhereItMustNotShine) {
+  auto prepared = prepare(test::source_folder() / "tests/rigs/visitors", {});
+  ASSERT_TRUE(prepared.has_value()) << test::listed(prepared.error());
+  const auto scenario = parse_scenario(R"([scenario]
+name = "a desk"
+length_s = 40
+[[event]]
+name = "the desk is there"
+at_s = 12
+do = "desk"
+on = ["head", "bulb"]
+value = 0.6
+pan_deg = -90   # over the audience
+tilt_deg = 55
+for_s = 10
+[[expect]]
+reached = "level bulb >= 0.59"
+after = "the desk is there"
+within_s = 3
+[[expect]]
+at_end = "phase holding"
+)",
+                                       "desk.toml", prepared->session->rig);
+  ASSERT_TRUE(scenario.has_value()) << test::listed(scenario.error());
+  const Outcome outcome = run_stepped(*prepared, *scenario, 1);
+  EXPECT_EQ(failed(outcome), "");
+}
+
 TEST(SteppedShow, AFaultOfTheWireIsNotPassedOver) {
   const Scenario scenario = scenario_of("[[event]]\nat_s = 5\nfault = \"reordered\"\non = [\"track\"]\n");
   EXPECT_NE(run_stepped(gallery(), scenario, 1).error.find("fault reordered is of the wire"), std::string::npos);
