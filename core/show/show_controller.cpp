@@ -279,7 +279,7 @@ void ShowController::State::resume(Time now) { start_cue(now, asked); }
 void ShowController::State::fade_to_safe(Time now) {
   std::vector<double> present = present_levels(now);
   program.lamp_starts.clear();  // the safe look does not wait for stages
-  fade(now, std::move(present), estimator.within_limits(safe_levels(), now), rig.safe.fade_s, rig.control.fade_curve);
+  fade(now, std::move(present), limited_safe_levels(now), rig.safe.fade_s, rig.control.fade_curve);
   progress.converged = false;
   progress.breaches.clear();
   enter(Phase::safe_fading, now);
@@ -454,7 +454,7 @@ void ShowController::step(Time now) {
 void ShowController::solve_beside(Beside beside) { state_->solving.use(std::move(beside)); }
 
 std::vector<double> ShowController::safe_look(Time now) const {
-  std::vector<double> level = state_->estimator.within_limits(state_->safe_levels(), now);
+  std::vector<double> level = state_->limited_safe_levels(now);
   for (const HeadDim& dim : state_->program.dims) {
     if (dim.to == 0) level[dim.fixture] = 0;
   }

@@ -167,6 +167,8 @@ struct ShowController::State {
 
   // Status (show_status.cpp, show_verdicts.cpp).
   [[nodiscard]] std::vector<double> safe_levels() const;
+  /// The safe look within limits: with lost lamps as they are, and with all of them answering again.
+  [[nodiscard]] std::vector<double> limited_safe_levels(Time now) const;
   /// Largest |aimed − measured| / goal over the metered goals; 0 without any.
   [[nodiscard]] double possible_gain(const Correction& correction) const;
   [[nodiscard]] std::optional<std::size_t> meter_at(std::size_t point) const;

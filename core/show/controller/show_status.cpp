@@ -20,6 +20,18 @@ std::vector<double> ShowController::State::safe_levels() const {
   return level;
 }
 
+std::vector<double> ShowController::State::limited_safe_levels(Time now) const {
+  const std::vector<double> wanted = safe_levels();
+  std::vector<double> level = estimator.within_limits(wanted, now);
+  if (!lost.any()) return level;
+  // A lamp that comes back gets its level at once.
+  GainEstimator all_answer = estimator;
+  all_answer.set_lost({}, watched);
+  const std::vector<double> answering = all_answer.within_limits(wanted, now);
+  for (std::size_t i = 0; i < level.size(); ++i) level[i] = std::min(level[i], answering[i]);
+  return level;
+}
+
 std::optional<std::size_t> ShowController::State::meter_at(std::size_t point) const {
   for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) {
     if (rig.luxmeters[i].point == point) return i;
