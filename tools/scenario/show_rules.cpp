@@ -175,7 +175,8 @@ void ShowRules::look_at_limits(double at_s, const Instant& instant) {
           limits, at_s,
           fmt::format("{} is sent level {:.3f}, its highest is {:.3f}", rig_.fixtures[f].name, instant.level[f], most));
   }
-  if (strange_) return;  // daylight is nobody's output, and who shades a meter raises its lamps
+  // Daylight is nobody's output. Who shades a meter raises its lamps, until a sample after that corrects them.
+  if (strange_ || (strange_s_ && at_s - *strange_s_ < kHearsAgain_s)) return;
   if (deaf_lately(at_s)) return;
   for (std::size_t p = 0; p < instant.lux.size(); ++p) {
     if (!rig_.points[p].max_lx) continue;
