@@ -281,7 +281,8 @@ void ShowRules::look_at_hands(double at_s, const Instant& instant) {
           by_hand, at_s,
           fmt::format("{} was set to level {:.3g} by hand, and is no longer held", rig_.fixtures[f].name, held.level));
     // Limits may hold it lower. Failures and blackouts override it while they last.
-    if (at_s - held.since_s > kHandWithin_s && instant.status->phase == Phase::holding && !dark_ &&
+    const bool just_now = disturbed_s_ && at_s - *disturbed_s_ <= kDisturbance_s;  // the status is a moment older
+    if (!just_now && at_s - held.since_s > kHandWithin_s && instant.status->phase == Phase::holding && !dark_ &&
         !desk_lately(at_s) && instant.level[f] > held.level + kLevelStep)
       broken(by_hand, at_s,
              fmt::format("{} was set to level {:.3g} by hand, and is sent {:.3g}", rig_.fixtures[f].name, held.level,
