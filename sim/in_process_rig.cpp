@@ -10,7 +10,11 @@
 namespace luxrig::sim {
 
 InProcessRig::InProcessRig(Rig rig, std::unique_ptr<World> world, const InProcessOptions& options)
-    : rig_(std::move(rig)), world_(std::move(world)), options_(options), taken_(rig_.luxmeters.size()) {
+    : rig_(std::move(rig)),
+      world_(std::move(world)),
+      options_(options),
+      faults_(options.fault_seed),
+      taken_(rig_.luxmeters.size()) {
   LUXRIG_CHECK(world_ != nullptr && world_->fixtures().size() == rig_.fixtures.size() &&
                    world_->meter_gains().size() == rig_.luxmeters.size(),
                "world of another rig");

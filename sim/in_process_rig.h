@@ -20,6 +20,7 @@ struct InProcessOptions {
   Time start{};              ///< the controller's time at the start of the world's clock
   Duration write_latency{};  ///< from write() or move() to the fixture
   Duration read_latency{};   ///< from a meter's sample to read()
+  std::uint64_t fault_seed = 1;  ///< of what is lost, doubled and garbled
   /// Silence after which health() calls a device that can answer faulted.
   Duration fault_after = std::chrono::milliseconds(500);
 };

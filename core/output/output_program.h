@@ -102,8 +102,8 @@ struct OutputProgram {
   std::vector<std::uint8_t> parked{};  ///< per fixture, 1 = desks do not turn it; may be empty
 
   /// Levels at `now`, per fixture. Never above max_level, and worst_lux_per_level · level never above max_lx with what
-  /// is left of excess_lx (scale_to_limits). Both limits apply to a desk's levels, too. Values that are missing or NaN count as 0. Times
-  /// before `start` count as `start`. Allocates nothing.
+  /// is left of excess_lx (scale_to_limits). Both limits apply to a desk's levels, too. Values that are missing or NaN
+  /// count as 0. Times before `start` count as `start`. Allocates nothing.
   void levels_at(Time now, std::span<double> level) const;
   /// Target joints of heads at `now`, per fixture. Allocates nothing.
   void joints_at(Time now, std::span<Joints> joints) const;

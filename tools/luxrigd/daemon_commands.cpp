@@ -20,11 +20,6 @@ namespace {
 constexpr Duration kContactFound = std::chrono::seconds(2);  // allowed for the first answer, or a retry
 constexpr Duration kStillSaid = std::chrono::seconds(60);
 
-/// Wall-clock time [s], for saved state.
-double unix_now_s() {
-  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
-}
-
 std::vector<Problem> problem_with(const char* what, const Fault& fault, const char* mend) {
   return {{what, 0, 0, fault.detail, mend}};
 }

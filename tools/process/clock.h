@@ -20,6 +20,13 @@ inline std::atomic<const std::atomic<Time>*> stepped_time{nullptr};
   return Time(std::chrono::seconds(t.tv_sec) + std::chrono::nanoseconds(t.tv_nsec));
 }
 
+/// Wall-clock time [s since 1970], for what is saved. With stepped time: that, since its own beginning.
+[[nodiscard]] inline double unix_now_s() {
+  if (const auto* stepped = stepped_time.load(std::memory_order_acquire))
+    return to_seconds(stepped->load().time_since_epoch());
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
 inline void sleep_until(Time wake) {
   const auto since_epoch = wake.time_since_epoch().count();
   timespec t{};

@@ -4,7 +4,6 @@
 #include <fnmatch.h>
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 
@@ -56,9 +55,13 @@ const Subject& subject_of(Of of) {
   return *std::find_if(std::begin(kSubjects), std::end(kSubjects), [of](const Subject& s) { return s.of == of; });
 }
 
-constexpr std::array<Phase, 10> kPhases = {Phase::idle,        Phase::moving,     Phase::fading,  Phase::settling,
-                                           Phase::measuring,   Phase::correcting, Phase::holding, Phase::frozen,
-                                           Phase::safe_fading, Phase::safe};
+/// By Phase.
+std::vector<std::string_view> phase_names() {
+  std::vector<std::string_view> names;
+  for (int phase = 0; phase <= static_cast<int>(Phase::safe); ++phase)
+    names.emplace_back(luxrig::name_of(static_cast<Phase>(phase)));
+  return names;
+}
 
 struct Word {
   std::string text;
@@ -203,8 +206,7 @@ class ConditionReader {
   }
 
   bool read_phase(Condition& condition) {
-    std::vector<std::string_view> known;
-    for (const Phase phase : kPhases) known.emplace_back(luxrig::name_of(phase));
+    const std::vector<std::string_view> known = phase_names();
     const std::string given = next_ < words_.size() ? words_[next_].text : "";
     const auto at = std::find(known.begin(), known.end(), given);
     if (at == known.end()) {
@@ -212,7 +214,7 @@ class ConditionReader {
             mend_for_unknown(given, known, ""));
       return false;
     }
-    condition.phase = kPhases[static_cast<std::size_t>(at - known.begin())];
+    condition.phase = static_cast<Phase>(at - known.begin());
     ++next_;
     return true;
   }

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <map>
 #include <random>
+#include <set>
 
 #include "tools/scenario/desk.h"
 #include "tools/scenario/jobs.h"
@@ -215,7 +215,7 @@ Explored explore(const PreparedRig& rig, const ExploreOptions& options,
                  const std::function<void(const Explored&)>& told) {
   const auto end = Clock::now() + std::chrono::duration<double>(60 * options.minutes);
   Explored explored;
-  std::map<std::string, Scenario> first;  // by rule, the show with the fewest events
+  std::set<std::string> broken;  // rules
   const Rig& in = rig.session->rig;
   while (Clock::now() < end && explored.shows < options.max_shows) {
     const std::uint64_t from = options.seed + explored.shows;
@@ -227,13 +227,12 @@ Explored explore(const PreparedRig& rig, const ExploreOptions& options,
     });
     for (std::size_t i = 0; i < count; ++i) {
       const std::string rule = broken_rule(outcomes[i]);
-      if (rule.empty() || first.contains(rule)) continue;
+      if (rule.empty() || !broken.insert(rule).second) continue;
       Finding finding;
       finding.rule = rule;
       finding.scenario = smallest(rig, random_show(in, from + i, options.length_s), rule);
       finding.outcome = run_stepped(rig, finding.scenario, finding.scenario.seeds.front(), {true, false});
       for (const std::size_t e : finding.outcome.refused) finding.scenario.events[e].refused = true;
-      first.emplace(rule, finding.scenario);
       explored.findings.push_back(std::move(finding));
     }
     explored.shows += count;
@@ -274,9 +273,7 @@ std::string to_toml(const Scenario& scenario) {
     if (event.refused) out += "refused = true\n";
   }
   for (const Expectation& expectation : scenario.expectations) {
-    constexpr const char* kKeys[] = {"always", "never", "reached", "at_end"};
-    out += fmt::format("\n[[expect]]\n{} = {}\n", kKeys[static_cast<std::size_t>(expectation.kind)],
-                       quoted(expectation.condition.written));
+    out += fmt::format("\n[[expect]]\n{} = {}\n", name_of(expectation.kind), quoted(expectation.condition.written));
     if (expectation.after) out += fmt::format("after = {}\n", quoted(scenario.events[*expectation.after].name));
     if (expectation.from_s > 0) out += fmt::format("from_s = {}\n", expectation.from_s);
     if (expectation.within_s) out += fmt::format("within_s = {}\n", *expectation.within_s);

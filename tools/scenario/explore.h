@@ -1,5 +1,6 @@
 #pragma once
-/// Looks for shows that break a rule: random faults and commands, and from each that breaks one, the smallest that does.
+/// Looks for shows that break a rule: random faults and commands. From each that breaks one, it keeps the smallest that
+/// does.
 
 #include <functional>
 #include <string>

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/rig/scene_spec.h"
@@ -62,7 +63,7 @@ struct Event {
     power_cut,
     fault
   };
-  std::string name;
+  std::string name;  ///< empty: nothing refers to it
   // It happens at this time, or so long after another event or the instant at which a condition first holds.
   double at_s = 0;                   ///< if neither of the next two; else the delay
   std::optional<std::size_t> after;  ///< an earlier event
@@ -104,7 +105,11 @@ struct Scenario {
   std::vector<Expectation> expectations;
 };
 
-[[nodiscard]] const char* name_of(Expectation::Kind kind);
-[[nodiscard]] const char* name_of(Event::What what);
+/// As in the file: "at_end", "lift_blackout".
+[[nodiscard]] std::string_view name_of(Expectation::Kind kind);
+[[nodiscard]] std::string_view name_of(Event::What what);
+
+/// A command to the daemon, which may refuse it.
+[[nodiscard]] constexpr bool is_command(Event::What what) { return what <= Event::What::end_bypass; }
 
 }  // namespace luxrig::scenario

@@ -49,6 +49,15 @@ constexpr Needs kNeeds[] = {
     {What::fault, Needs::On::must, Needs::Value::none, 0, 0, true, "devices"},
 };
 
+constexpr bool in_order() {
+  for (std::size_t i = 0; i < std::size(kNeeds); ++i)
+    if (kNeeds[i].what != static_cast<What>(i)) return false;
+  return std::size(kNeeds) == static_cast<std::size_t>(What::fault) + 1;
+}
+static_assert(in_order(), "kNeeds is indexed by What");
+
+constexpr std::string_view kKinds[] = {"always", "never", "reached", "at_end"};  // by Expectation::Kind
+
 template <class Items>
 void add_names(const Items& items, std::vector<std::string>& names) {
   for (const auto& item : items) names.push_back(item.name);
@@ -186,7 +195,7 @@ class ScenarioReader {
 
   void read_action(Section& s, Event& event) {
     const Needs& needs = kNeeds[static_cast<std::size_t>(event.what)];
-    const std::string action = name_of(event.what);
+    const std::string_view action = name_of(event.what);
     std::vector<std::string> known;
     const bool goal_like = event.what == What::goal || event.what == What::shade;
     if (goal_like || event.what == What::release) add_names(rig_.points, known);
@@ -206,8 +215,7 @@ class ScenarioReader {
     }
     if (!needs.lasts) s.refuse("for_s", fmt::format("for_s has no effect on {}", action), "remove it");
     s.read("for_s", event.for_s);
-    const bool is_command = event.what <= What::end_bypass;
-    if (!is_command) s.refuse("refused", fmt::format("nobody can refuse {}", action), "remove it");
+    if (!is_command(event.what)) s.refuse("refused", fmt::format("nobody can refuse {}", action), "remove it");
     s.read("refused", event.refused);
     std::string plan;
     if (event.what != What::apply) s.refuse("plan", "plan has no effect: only do = \"apply\" takes one", "remove it");
@@ -260,7 +268,6 @@ class ScenarioReader {
   void read_expectation(Section& s) {
     Expectation expectation;
     expectation.in_file = s.in_file();
-    constexpr std::string_view kKinds[] = {"always", "never", "reached", "at_end"};
     int kinds = 0;
     for (std::size_t k = 0; k < std::size(kKinds); ++k) {
       std::string text;
@@ -299,58 +306,17 @@ class ScenarioReader {
 
 }  // namespace
 
-const char* name_of(Expectation::Kind kind) {
-  switch (kind) {
-    case Expectation::Kind::always:
-      return "always";
-    case Expectation::Kind::never:
-      return "never";
-    case Expectation::Kind::reached:
-      return "reached";
-    case Expectation::Kind::at_end:
-      return "at end";
-  }
-  return "";
-}
+std::string_view name_of(Expectation::Kind kind) { return kKinds[static_cast<std::size_t>(kind)]; }
 
-const char* name_of(Event::What what) {
-  switch (what) {
-    case What::apply:
-      return "apply";
-    case What::blackout:
-      return "blackout";
-    case What::lift_blackout:
-      return "lift_blackout";
-    case What::level:
-      return "level";
-    case What::goal:
-      return "goal";
-    case What::release:
-      return "release";
-    case What::park:
-      return "park";
-    case What::bypass:
-      return "bypass";
-    case What::end_bypass:
-      return "end_bypass";
-    case What::desk:
-      return "desk";
-    case What::cover:
-      return "cover";
-    case What::shade:
-      return "shade";
-    case What::daylight:
-      return "daylight";
-    case What::stop:
-      return "stop";
-    case What::kill:
-      return "kill";
-    case What::power_cut:
-      return "power_cut";
-    case What::fault:
-      return "fault";
-  }
-  return "";
+std::string_view name_of(Event::What what) {
+  static const std::vector<std::string_view> names = [] {
+    const std::span<const KeySpec> keys = keys_of("event");
+    auto choices =
+        choices_of(*std::find_if(keys.begin(), keys.end(), [](const KeySpec& key) { return key.key == "do"; }));
+    choices.emplace_back("fault");
+    return choices;
+  }();
+  return names.at(static_cast<std::size_t>(what));
 }
 
 std::string Expectation::text() const { return fmt::format("{} {}", name_of(kind), condition.written); }

@@ -90,7 +90,11 @@ void ShowRules::held_by_hand(double at_s, std::size_t fixture, double level, std
   hands_[fixture] = {level, at_s, for_s ? std::optional(at_s + *for_s) : std::nullopt};
 }
 
-void ShowRules::released() { hands_.clear(); }
+void ShowRules::released(const std::vector<std::string>& names) {
+  std::erase_if(hands_, [&](const auto& hand) {
+    return names.empty() || std::find(names.begin(), names.end(), rig_.fixtures[hand.first].name) != names.end();
+  });
+}
 
 void ShowRules::meter_lies(double at_s, std::size_t luxmeter, bool lies) {
   lied_s_ = at_s;
@@ -100,9 +104,9 @@ void ShowRules::meter_lies(double at_s, std::size_t luxmeter, bool lies) {
     lying_.erase(luxmeter);
 }
 
-void ShowRules::light_is_strange(double at_s, bool strange) {
-  strange_ = strange;
-  strange_s_ = at_s;
+void ShowRules::light_is_unmodelled(double at_s, bool unmodelled) {
+  unmodelled_ = unmodelled;
+  unmodelled_s_ = at_s;
 }
 
 void ShowRules::fixture_is_deaf(double at_s, bool deaf) {
@@ -167,6 +171,11 @@ void ShowRules::look(double at_s, const Instant& instant, const std::vector<bool
   before_ = instant.level;
 }
 
+void ShowRules::look_without_daemon(double at_s, const Instant& instant) {
+  look_at_limits(at_s, instant);
+  look_at_zones(at_s, instant);
+}
+
 void ShowRules::look_at_limits(double at_s, const Instant& instant) {
   for (std::size_t f = 0; f < instant.level.size(); ++f) {
     const double most = std::min(rig_.fixtures[f].max_level, rig_.limits.max_level);
@@ -176,7 +185,7 @@ void ShowRules::look_at_limits(double at_s, const Instant& instant) {
           fmt::format("{} is sent level {:.3f}, its highest is {:.3f}", rig_.fixtures[f].name, instant.level[f], most));
   }
   // Daylight is nobody's output. Who shades a meter raises its lamps, until a sample after that corrects them.
-  if (strange_ || (strange_s_ && at_s - *strange_s_ < kHearsAgain_s)) return;
+  if (unmodelled_ || (unmodelled_s_ && at_s - *unmodelled_s_ < kHearsAgain_s)) return;
   if (deaf_lately(at_s)) return;
   for (std::size_t p = 0; p < instant.lux.size(); ++p) {
     if (!rig_.points[p].max_lx) continue;
@@ -213,7 +222,7 @@ void ShowRules::look_at_meters(double at_s, const Instant& instant) {
         std::max(honest_lx, goal_or_limit_lx(rig_, *point, *instant.status)) / least_gain * kOffModel + 1;
     const bool by_hand_lately =
         !hands_.empty() || desk_lately(at_s) || (disturbed_s_ && at_s - *disturbed_s_ < kHandWithin_s);
-    if (!strange_ && lux > allowed && !by_hand_lately)
+    if (!unmodelled_ && lux > allowed && !by_hand_lately)
       broken(wrong_meter, at_s,
              fmt::format("{} gets {:.1f} lx while its luxmeter \"{}\" is wrong; the model allows {:.1f}",
                          rig_.points[*point].name, lux, rig_.luxmeters[m].name, allowed));
@@ -221,9 +230,9 @@ void ShowRules::look_at_meters(double at_s, const Instant& instant) {
 }
 
 void ShowRules::look_at_verdicts(double at_s, const Instant& instant) {
-  const bool believable = lying_.empty() && !desk_lately(at_s) && !strange_ &&
+  const bool believable = lying_.empty() && !desk_lately(at_s) && !unmodelled_ &&
                           (!lied_s_ || at_s - *lied_s_ > kAfterLie_s) &&
-                          (!strange_s_ || at_s - *strange_s_ > kAfterLie_s);
+                          (!unmodelled_s_ || at_s - *unmodelled_s_ > kAfterLie_s);
   if (!believable || instant.status->phase != Phase::holding || instant.status->blackout) {
     wrong_since_s_.clear();
     return;

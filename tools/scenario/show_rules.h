@@ -38,11 +38,12 @@ class ShowRules {
   void heads_may_turn(double at_s);
   void blackout(double at_s, bool on);
   void held_by_hand(double at_s, std::size_t fixture, double level, std::optional<double> for_s);
-  void released();
+  /// These fixtures, by name; empty = all.
+  void released(const std::vector<std::string>& names);
   /// From now on, or no longer, this meter does not show its light.
   void meter_lies(double at_s, std::size_t luxmeter, bool lies);
   /// The light at the truth's points is not that of lamps and file alone: a person in it, other daylight.
-  void light_is_strange(double at_s, bool strange);
+  void light_is_unmodelled(double at_s, bool unmodelled);
   /// A fixture that cannot answer does not get what it is sent: nobody can know its light.
   void fixture_is_deaf(double at_s, bool deaf);
   void daemon_gone(double at_s, const ShowStatus& last);
@@ -51,6 +52,9 @@ class ShowRules {
 
   /// Every instant while a daemon runs. sent: whether each bus has just been written to.
   void look(double at_s, const Instant& instant, const std::vector<bool>& sent);
+
+  /// Every instant while none runs: what limits and zones forbid stays forbidden.
+  void look_without_daemon(double at_s, const Instant& instant);
 
   /// One per rule.
   [[nodiscard]] std::vector<Judged> end() const { return judged_; }
@@ -73,8 +77,8 @@ class ShowRules {
   KeepOutZones zones_;
   std::vector<Judged> judged_;
   double max_step_ = 0;
-  std::optional<double> disturbed_s_, dark_since_s_, strange_s_, lied_s_;
-  bool strange_ = false, dark_ = false, desk_ = false;
+  std::optional<double> disturbed_s_, dark_since_s_, unmodelled_s_, lied_s_;
+  bool unmodelled_ = false, dark_ = false, desk_ = false;
   int deaf_ = 0;
   std::optional<double> deaf_s_, turning_s_, desk_s_;
   std::vector<double> before_;           ///< levels of the last instant

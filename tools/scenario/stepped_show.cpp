@@ -7,112 +7,20 @@
 #include <cmath>
 #include <set>
 
-#include "sim/in_process_rig.h"
 #include "tools/luxrigd/daemon.h"
 #include "tools/process/clock.h"
 #include "tools/process/files.h"
-#include "tools/scenario/desk.h"
 #include "tools/scenario/judge.h"
 #include "tools/scenario/show_rules.h"
+#include "tools/scenario/stepped_bus.h"
 
 namespace luxrig::scenario {
 namespace {
 
 using What = Event::What;
 
-constexpr Duration kTick = std::chrono::milliseconds(20);
 constexpr Time kBegin = Time{} + std::chrono::hours(1);  // a clock at 0 would look like "never"
 constexpr double kRestart_s = 0.5, kTracePeriod_s = 0.2;
-constexpr Duration kReadPeriod = std::chrono::milliseconds(100);
-
-/// What goes over the wires between daemon and devices.
-struct Wires {
-  std::vector<double> drive;                      ///< per fixture, as last sent
-  std::vector<std::optional<double>> reading_lx;  ///< per luxmeter, as last read
-  std::vector<bool> sent;                         ///< per bus, since the last look
-  /// Per fixture: what a lighting desk sends for it now; none: no desk does.
-  std::vector<std::optional<DeskCommand>> desk;
-};
-
-/// One bus of the simulated rig.
-class SteppedBus final : public Driver, public LevelOutput, public Mover, public LuxReader, public LevelInput {
- public:
-  /// first: it reports the health of all. reads: it reads the luxmeters of all.
-  SteppedBus(const Rig& rig, std::size_t bus, sim::InProcessRig& devices, Wires& wires, bool first, bool reads)
-      : devices_(devices),
-        wires_(wires),
-        bus_(bus),
-        first_(first),
-        reads_(reads),
-        rules_(desk_rules(rig.buses[bus])),
-        name_(rig.buses[bus].name) {
-    for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
-      const Fixture& fixture = rig.fixtures[f];
-      if (fixture.bus == bus) fixtures_.push_back(f);
-      moves_ = moves_ || (fixture.moves && fixture.motion_bus() == bus);
-    }
-  }
-  [[nodiscard]] DriverBounds bounds() const override {
-    DriverBounds bounds;
-    bounds.write_period = kTick;
-    bounds.read_period = kReadPeriod;
-    return bounds;
-  }
-  Result<void> activate(Time) override { return {}; }
-  void deactivate(Time) override {}
-  [[nodiscard]] std::vector<Health> health(Time now) const override {
-    return first_ ? devices_.health(now) : std::vector<Health>{};
-  }
-  LevelOutput* level_output() override { return fixtures_.empty() ? nullptr : this; }
-  Mover* mover() override { return moves_ ? this : nullptr; }
-  LuxReader* lux_reader() override { return reads_ ? this : nullptr; }
-  LevelInput* level_input() override { return rules_ ? this : nullptr; }
-
-  [[nodiscard]] DeskRules rules() const override { return *rules_; }
-  [[nodiscard]] std::vector<DeskPart> parts() const override { return {{name_, fixtures_}}; }
-  [[nodiscard]] std::span<const DeskFrame> listen(Time) override {
-    frame_.commands.clear();
-    for (const std::size_t f : fixtures_)
-      if (wires_.desk[f]) frame_.commands.push_back(*wires_.desk[f]);
-    frame_.presence = frame_.commands.empty() ? DeskPresence::absent : DeskPresence::present;
-    if (!frame_.commands.empty()) frame_.source = "desk";
-    return {&frame_, 1};
-  }
-  void set_silent(Time, std::size_t, bool silent) override { silent_ = silent; }
-
-  Result<void> write(Time now, std::span<const LevelCommand> commands) override {
-    wires_.sent[bus_] = true;
-    std::vector<LevelCommand> sent(commands.begin(), commands.end());
-    // In standby the desk drives the lamps itself.
-    for (LevelCommand& command : sent)
-      if (const auto& desk = wires_.desk[command.fixture]; silent_ && desk) command.drive = desk->drive;
-    for (const LevelCommand& command : sent) wires_.drive[command.fixture] = command.drive;
-    return devices_.write(now, sent);
-  }
-  Result<void> move(Time now, std::span<const AimCommand> commands) override {
-    std::vector<AimCommand> sent(commands.begin(), commands.end());
-    for (AimCommand& command : sent)
-      if (const auto& desk = wires_.desk[command.fixture]; silent_ && desk && desk->joints)
-        command.joints = *desk->joints;
-    return devices_.move(now, sent);
-  }
-  Result<std::vector<LuxReading>> read(Time now) override {
-    auto readings = devices_.read(now);
-    if (readings)
-      for (const LuxReading& reading : *readings) wires_.reading_lx[reading.luxmeter] = reading.lux;
-    return readings;
-  }
-
- private:
-  sim::InProcessRig& devices_;
-  Wires& wires_;
-  std::size_t bus_;
-  bool first_, reads_, moves_ = false, silent_ = false;
-  std::optional<DeskRules> rules_;
-  std::string name_;
-  std::vector<std::size_t> fixtures_;
-  DeskFrame frame_;
-};
 
 /// A folder in memory for the daemon's state, as long as this lives.
 class StateFolder {
@@ -155,7 +63,7 @@ class SteppedShow {
         scenario_(scenario),
         rig_(prepared.session->rig),
         options_(options),
-        devices_(rig_, std::move(world), {kBegin}),
+        devices_(rig_, std::move(world), {.start = kBegin, .fault_seed = seed}),
         judge_(scenario, rig_),
         rules_(rig_) {
     outcome_.seed = seed;
@@ -217,22 +125,29 @@ class SteppedShow {
       if (const auto applied = daemon_->apply(prepared_.plan, true); !applied)
         fail("the solved plan is refused: " + applied.error().front().text());
     daemon_->tick();
+    instant_.status = &daemon_->status();
     if (!first) rules_.daemon_back(seconds(), daemon_->status());
     rules_.disturbed(seconds());
     rules_.heads_may_turn(seconds());
   }
 
-  void end_daemon(const Event& event) {
-    if (!daemon_) return;
+  /// stop: fades to the safe look first, and ends when that is reached.
+  void end_daemon(std::size_t e) {
+    ending_ = e;
     rules_.disturbed(seconds());
-    if (event.what == What::stop) {
-      daemon_->go_safe();
-      const Time most = time_.load() + from_seconds(rig_.safe.fade_s + 2);
-      while (daemon_->status().phase != Phase::safe && time_.load() < most && seconds() < scenario_.length_s)
-        step_daemon();
-      if (daemon_->status().phase == Phase::safe) rules_.ended_in_order(seconds(), instant_.level);
-    }
-    rules_.daemon_gone(seconds(), daemon_->status());
+    if (scenario_.events[e].what != What::stop) return daemon_ends();
+    daemon_->go_safe();
+    ends_s_ = seconds() + rig_.safe.fade_s + 2;
+  }
+
+  void daemon_ends() {
+    const Event& event = scenario_.events[*ending_];
+    ending_.reset();
+    if (event.what == What::stop && daemon_->status().phase == Phase::safe)
+      rules_.ended_in_order(seconds(), instant_.level);
+    left_ = daemon_->status();
+    instant_.status = &left_;
+    rules_.daemon_gone(seconds(), left_);
     daemon_.reset();
     handlers_ = {};
     back_s_ = seconds() + event.for_s.value_or(kRestart_s);
@@ -243,38 +158,39 @@ class SteppedShow {
     for (const Fixture& fixture : rig_.fixtures) devices_.faults().set(fixture.name, sim::FaultKind::unpowered, !on);
     for (const Luxmeter& meter : rig_.luxmeters) devices_.faults().set(meter.name, sim::FaultKind::unpowered, !on);
     cut_ = !on;
+    if (!on) return;
+    // What has no power for another reason stays without.
+    for (std::size_t e = 0; e < scenario_.events.size(); ++e) {
+      const Event& event = scenario_.events[e];
+      if (event.what != What::fault || event.fault != sim::FaultKind::unpowered || !lasts(e)) continue;
+      for (const std::string& device : event.on) devices_.faults().set(device, event.fault, true);
+    }
   }
 
   // ---- time ----
 
   void tick() {
-    if (!daemon_) {
-      time_ = time_.load() + kTick;
-      devices_.advance(time_);
-      if (seconds() >= back_s_ - 1e-9) {
-        if (cut_) power(true);
-        start_daemon(false);
-        log("the daemon is back");
-      }
-      return;
-    }
     begin_events();
     end_lasting();
-    if (!daemon_) return;
-    step_daemon();
-    judge_.look(seconds(), instant_);
-    remember_conditions();
-  }
-
-  void step_daemon() {
     time_ = time_.load() + kTick;
-    daemon_->tick();
+    if (daemon_)
+      daemon_->tick();
+    else if (seconds() >= back_s_ - 1e-9)
+      restart();
     devices_.advance(time_);
     look();
+    if (daemon_ && ending_ && (daemon_->status().phase == Phase::safe || seconds() >= ends_s_)) daemon_ends();
   }
 
+  void restart() {
+    if (cut_) power(true);
+    start_daemon(false);
+    log("the daemon is back");
+  }
+
+  /// While no daemon runs, its status is as it left it, and lamps do what they do without data.
   void look() {
-    instant_.status = &daemon_->status();
+    if (daemon_) instant_.status = &daemon_->status();
     const std::vector<sim::PointTruth> points = devices_.world().points();
     instant_.lux.resize(points.size());
     for (std::size_t p = 0; p < points.size(); ++p) {
@@ -285,12 +201,17 @@ class SteppedShow {
     for (std::size_t f = 0; f < rig_.fixtures.size(); ++f)
       instant_.level[f] = level_from_drive(rig_.fixtures[f].dimmer_curve, wires_.drive[f]);
     instant_.joints = devices_.world().joints();
-    rules_.look(seconds(), instant_, wires_.sent);
+    if (daemon_)
+      rules_.look(seconds(), instant_, wires_.sent);
+    else
+      rules_.look_without_daemon(seconds(), instant_);
     std::fill(wires_.sent.begin(), wires_.sent.end(), false);
-    if (const Phase phase = daemon_->status().phase; phase != phase_) {
+    if (const Phase phase = instant_.status->phase; phase != phase_) {
       phase_ = phase;
       log(fmt::format("phase {}", luxrig::name_of(phase)));
     }
+    judge_.look(seconds(), instant_);
+    remember_conditions();
     if (options_.trace && seconds() >= next_trace_s_ - 1e-9) trace();
   }
 
@@ -307,7 +228,7 @@ class SteppedShow {
     std::vector<double> row = instant_.lux;
     for (const auto& reading : instant_.reading_lx) row.push_back(reading.value_or(NAN));
     row.insert(row.end(), instant_.level.begin(), instant_.level.end());
-    row.push_back(static_cast<double>(daemon_->status().phase));
+    row.push_back(static_cast<double>(phase_));
     trace.rows.push_back(std::move(row));
   }
 
@@ -328,7 +249,7 @@ class SteppedShow {
   }
 
   void begin_events() {
-    for (std::size_t e = 0; e < scenario_.events.size() && daemon_; ++e) {
+    for (std::size_t e = 0; e < scenario_.events.size(); ++e) {
       if (happened_s_[e]) continue;
       const auto due = due_s(e);
       if (!due || seconds() < *due - 1e-9) continue;
@@ -339,14 +260,19 @@ class SteppedShow {
   }
 
   void end_lasting() {
-    for (std::size_t e = 0; e < scenario_.events.size() && daemon_; ++e) {
+    for (std::size_t e = 0; e < scenario_.events.size(); ++e) {
       const Event& event = scenario_.events[e];
-      if (!event.for_s || !happened_s_[e] || ended_.contains(e) || ends_the_daemon(event.what)) continue;
+      if (!event.for_s || !lasts(e) || ends_the_daemon(event.what)) continue;
       if (seconds() < *happened_s_[e] + *event.for_s - 1e-9) continue;
+      const bool by_command = event.what == What::blackout || event.what == What::bypass;
+      if (by_command && !daemon_) continue;  // as soon as it is back
       ended_.insert(e);
       end(event);
     }
   }
+
+  /// It has begun and not ended.
+  [[nodiscard]] bool lasts(std::size_t e) const { return happened_s_[e] && !ended_.contains(e); }
 
   /// Outcome of a command.
   template <class Answer>
@@ -368,8 +294,12 @@ class SteppedShow {
   void begin(std::size_t e) {
     const Event& event = scenario_.events[e];
     log(event.name.empty() ? text_of(event) : fmt::format("{} ({})", event.name, text_of(event)));
-    const bool is_command = event.what <= What::end_bypass;
-    if (is_command) rules_.disturbed(seconds());
+    const bool needs_daemon = is_command(event.what) || ends_the_daemon(event.what);
+    if (needs_daemon && (!daemon_ || ending_)) {
+      if (is_command(event.what)) answered(event, Result<void>(refusal("no daemon runs")));
+      return;  // what has gone cannot end
+    }
+    if (is_command(event.what)) rules_.disturbed(seconds());
     if (event.what == What::apply || event.what == What::park || event.what == What::release)
       rules_.heads_may_turn(seconds());
     switch (event.what) {
@@ -398,9 +328,11 @@ class SteppedShow {
       }
       case What::goal:
         return answered(event, handlers_.goal(event.on, *event.value, event.for_s));
-      case What::release:
-        rules_.released();
-        return answered(event, handlers_.release(event.on));
+      case What::release: {
+        const auto done = handlers_.release(event.on);
+        if (done) rules_.released(event.on);
+        return answered(event, done);
+      }
       case What::park:
         return answered(event, handlers_.park(event.on));
       case What::bypass:
@@ -416,14 +348,14 @@ class SteppedShow {
         return;
       case What::shade:
         for (const std::size_t p : event.which) devices_.world().set_shade(p, *event.value);
-        return rules_.light_is_strange(seconds(), true);
+        return rules_.light_is_unmodelled(seconds(), true);
       case What::daylight:
         devices_.world().set_daylight(*event.value);
-        return rules_.light_is_strange(seconds(), true);
+        return rules_.light_is_unmodelled(seconds(), true);
       case What::stop:
       case What::kill:
       case What::power_cut:
-        return end_daemon(event);
+        return end_daemon(e);
       case What::fault:
         return set_faults(event, true);
     }
@@ -453,17 +385,17 @@ class SteppedShow {
       case What::shade:
         log("nobody stands in the light");
         for (const std::size_t p : event.which) devices_.world().set_shade(p, 1);
-        return rules_.light_is_strange(seconds(), false);
+        return rules_.light_is_unmodelled(seconds(), false);
       case What::daylight:
         log("daylight as before");
         devices_.world().set_daylight(1);
-        return rules_.light_is_strange(seconds(), false);
+        return rules_.light_is_unmodelled(seconds(), false);
       case What::level:  // the daemon releases it
         return rules_.disturbed(seconds());
-      case What::goal:
-        return;
-      default:
+      case What::fault:
         return set_faults(event, false);
+      default:  // nothing else lasts, or the daemon ends it by itself
+        return;
     }
   }
 
@@ -502,7 +434,7 @@ class SteppedShow {
   }
 
   [[nodiscard]] static std::string text_of(const Event& event) {
-    std::string text = event.what == What::fault ? std::string(sim::name_of(event.fault)) : name_of(event.what);
+    std::string text(event.what == What::fault ? sim::name_of(event.fault) : name_of(event.what));
     for (const std::string& name : event.on) text += " " + name;
     if (event.value) text += fmt::format(" {:g}", *event.value);
     if (event.for_s) text += fmt::format(" for {:g} s", *event.for_s);
@@ -521,6 +453,9 @@ class SteppedShow {
   HttpHandlers handlers_;
   double back_s_ = 0, next_trace_s_ = 0;
   bool cut_ = false;
+  std::optional<std::size_t> ending_;  ///< event that ends the daemon, while that takes time
+  double ends_s_ = 0;
+  ShowStatus left_;  ///< by the daemon that has gone
   Instant instant_;
   Phase phase_ = Phase::idle;
   std::vector<std::optional<double>> happened_s_, held_s_;  ///< per event; held: of its condition

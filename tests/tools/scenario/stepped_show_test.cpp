@@ -119,6 +119,20 @@ TEST(SteppedShow, ADaemonThatDiesComesBackWithWhatWasOrdered) {
   EXPECT_EQ(failed(run_stepped(gallery(), scenario, 1)), "");
 }
 
+TEST(SteppedShow, TheRoomIsJudgedAndGoesOnWhileNoDaemonRuns) {
+  const Scenario scenario = scenario_of(
+      "[[event]]\nat_s = 12\ndo = \"shade\"\non = [\"harbour\"]\nvalue = 0\nfor_s = 10\n"
+      "[[event]]\nat_s = 20\ndo = \"kill\"\nfor_s = 6\n"
+      "[[event]]\nat_s = 21\ndo = \"blackout\"\nrefused = true\n"
+      "[[expect]]\nalways = \"lux harbour < 1\"\nfrom_s = 20.5\nwithin_s = 1\n"
+      "[[expect]]\nat_end = \"lux harbour > 100\"\nfrom_s = 22\nwithin_s = 1\n");
+  EXPECT_EQ(failed(run_stepped(gallery(), scenario, 1)), "");
+  const Scenario wrong = scenario_of(
+      "[[event]]\nat_s = 15\ndo = \"kill\"\nfor_s = 6\n"
+      "[[expect]]\nalways = \"lux harbour < 20\"\nfrom_s = 17\nwithin_s = 2\n");
+  EXPECT_FALSE(run_stepped(gallery(), wrong, 1).passed()) << "lamps hold their light without data";
+}
+
 TEST(SteppedShow, ADaemonThatIsStoppedLeavesTheSafeLook) {
   const Scenario scenario = scenario_of(
       "[[event]]\nat_s = 15\ndo = \"stop\"\nfor_s = 2\n[[expect]]\nreached = \"phase "
@@ -172,6 +186,8 @@ TEST(SteppedShow, AFaultOfTheWireIsNotPassedOver) {
 TEST(SteppedShow, TheSameSeedGivesTheSameBytesInAnyNumberOfProcesses) {
   const Scenario scenario = scenario_of(
       "[[event]]\nat_s = 8\nfault = \"lost\"\nvalue = 0.4\non = [\"conservation\"]\nfor_s = 5\n"
+      "[[event]]\nat_s = 9\ndo = \"level\"\non = [\"venus-spot\"]\nvalue = 0.3\nfor_s = 8\n"
+      "[[event]]\nat_s = 11\ndo = \"kill\"\nfor_s = 0.7\n"
       "[[expect]]\nalways = \"lux harbour < 100\"\n",
       20);
   const auto all = [&](int jobs) {
