@@ -52,6 +52,7 @@ GainEstimator::GainEstimator(const Rig& rig, const LightModel& model)
     : luxmeters_(rig.luxmeters),
       points_(rig.points),
       meter_of_point_(rig.points.size()),
+      over_(rig.luxmeters.size()),
       meters_(rig.luxmeters.size()) {
   const auto fixtures = static_cast<Index>(rig.fixtures.size()), points = static_cast<Index>(points_.size()),
              meters = static_cast<Index>(luxmeters_.size());
@@ -320,8 +321,13 @@ std::vector<Judgement> GainEstimator::update(Time now, std::span<const LuxReadin
   std::vector<const LuxReading*> believed;
   // All are judged by the knowledge before, so that their order does not matter.
   for (const LuxReading& reading : readings) {
-    judgements.push_back(judge(reading, level));
-    if (judgements.back().believed) believed.push_back(&reading);
+    const Judgement& judgement = judgements.emplace_back(judge(reading, level));
+    if (judgement.believed) believed.push_back(&reading);
+    std::optional<Evidence>& over = over_[judgement.luxmeter];
+    if (judgement.believed || judgement.stuck)
+      over.reset();
+    else if (reading.lux > judgement.predicted_lx && reading.lux <= judgement.highest_lx)
+      over = Evidence{reading.luxmeter, reading.lux, reading.taken, at};
   }
   // Values of a stuck meter since it stopped changing cannot be trusted either, nor later ones that happen to match the
   // light at that time.
@@ -357,6 +363,7 @@ double GainEstimator::lux_per_level(std::size_t point, std::size_t fixture) cons
 void GainEstimator::forget(std::size_t luxmeter) {
   std::erase_if(evidence_, [&](const Evidence& e) { return e.luxmeter == luxmeter; });
   meters_.at(luxmeter) = Meter{};
+  over_.at(luxmeter).reset();
   Time newest{};
   for (const Evidence& e : evidence_) newest = std::max(newest, e.taken);
   estimate(newest);

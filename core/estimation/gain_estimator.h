@@ -157,8 +157,9 @@ class GainEstimator {
   [[nodiscard]] bool confirmed(std::size_t point) const;
 
   /// The most lux that can truly be at this point at these levels, given bounds and evidence. Without a meter there:
-  /// the model with upper gains, over (1 − open_loop_margin). With one: the last believed reading / (1 − tolerance),
-  /// plus 1 % for its noise, carried over to these levels in the worst way that the bounds allow.
+  /// the model with upper gains, over (1 − open_loop_margin). With one: the last reading that is believed, or a later one
+  /// that is not but is higher, / (1 − tolerance), plus 1 % for its noise, carried over to these levels in the worst way
+  /// that the bounds allow.
   [[nodiscard]] double max_lux_at_point(std::size_t point, std::span<const double> level, Time now) const;
   /// The same if lost lamps were at these levels, too.
   [[nodiscard]] double max_lux_as_given(std::size_t point, std::span<const double> level, Time now) const;
@@ -259,6 +260,9 @@ class GainEstimator {
   std::vector<std::optional<Lost>> lost_;  ///< per fixture; may be empty
   std::vector<std::uint8_t> watched_;      ///< per luxmeter; may be empty
   std::vector<Evidence> evidence_;         ///< in order of arrival
+  /// Per luxmeter: a reading that contradicts what it read before, and is higher. Nothing is learned from it, but the
+  /// meter may be right now (somebody stood in the light before), so limits hold by it. Until a reading is believed.
+  std::vector<std::optional<Evidence>> over_;
   std::vector<Meter> meters_;
   Eigen::LDLT<Eigen::MatrixXd> innovation_;  ///< covariance of the evidence
   Eigen::VectorXd gain_, gain_error_;

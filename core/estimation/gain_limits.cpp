@@ -27,7 +27,8 @@ RowVectorXd GainEstimator::unmeasured_worst(const Row& row) const {
 double GainEstimator::max_lux(const Row& row, const VectorXd& level, Time now) const {
   const double unmeasured = unmeasured_worst(row).dot(level);
   if (!row.luxmeter || latest(*row.luxmeter) == nullptr) return unmeasured + row.unseen_lx;
-  const Evidence& e = *latest(*row.luxmeter);
+  const auto& over = over_[*row.luxmeter];
+  const Evidence& e = over ? *over : *latest(*row.luxmeter);
   // max Σ A_j w_j over lower ≤ A ≤ upper, A · (levels of the reading) ≤ the true value at most: a fractional knapsack,
   // filled by best w_j per level. w_j: level, times the most that the dimmer's true curve may add on the way there.
   const Index n = level.size();
@@ -35,7 +36,8 @@ double GainEstimator::max_lux(const Row& row, const VectorXd& level, Time now) c
   double least = 0;
   for (Index j = 0; j < n; ++j) {
     const double m = row.lux_per_level[j], x = row.factor[j], sd = row.factor_error[j];
-    upper[j] = m * std::min(gain_max_ * local_, x + 3 * sd) + (m > 0 ? 0 : 3 * row.standard_error[j] * gain_max_);
+    const double most = over ? gain_max_ * local_ : std::min(gain_max_ * local_, x + 3 * sd);
+    upper[j] = m * most + (m > 0 ? 0 : 3 * row.standard_error[j] * gain_max_);
     lower[j] = std::min(upper[j], m * std::max(gain_min_ / local_, x - 3 * sd));
     w[j] = level[j] *
            std::exp(e.level[j] > 0 && level[j] > 0 ? kCurveError * std::abs(std::log(level[j] / e.level[j])) : 0);

@@ -109,6 +109,15 @@ void ShowRules::light_is_unmodelled(double at_s, bool unmodelled) {
   unmodelled_s_ = at_s;
 }
 
+void ShowRules::meter_is_mute(double at_s, bool mute) {
+  mute_ += mute ? 1 : -1;
+  if (unmodelled_s_ && mute_ == 0) unmodelled_s_ = at_s;
+}
+
+bool ShowRules::unmodelled_lately(double at_s, double for_s) const {
+  return unmodelled_ || (unmodelled_s_ && (mute_ > 0 || at_s - *unmodelled_s_ < for_s));
+}
+
 void ShowRules::fixture_is_deaf(double at_s, bool deaf) {
   deaf_ += deaf ? 1 : -1;
   deaf_s_ = at_s;
@@ -185,8 +194,7 @@ void ShowRules::look_at_limits(double at_s, const Instant& instant) {
           fmt::format("{} is sent level {:.3f}, its highest is {:.3f}", rig_.fixtures[f].name, instant.level[f], most));
   }
   // Daylight is nobody's output. Who shades a meter raises its lamps, until a sample after that corrects them.
-  if (unmodelled_ || (unmodelled_s_ && at_s - *unmodelled_s_ < kHearsAgain_s)) return;
-  if (deaf_lately(at_s)) return;
+  if (unmodelled_lately(at_s, kHearsAgain_s) || deaf_lately(at_s)) return;
   for (std::size_t p = 0; p < instant.lux.size(); ++p) {
     if (!rig_.points[p].max_lx) continue;
     double tolerance = kLimitSlack;
@@ -230,9 +238,8 @@ void ShowRules::look_at_meters(double at_s, const Instant& instant) {
 }
 
 void ShowRules::look_at_verdicts(double at_s, const Instant& instant) {
-  const bool believable = lying_.empty() && !desk_lately(at_s) && !unmodelled_ &&
-                          (!lied_s_ || at_s - *lied_s_ > kAfterLie_s) &&
-                          (!unmodelled_s_ || at_s - *unmodelled_s_ > kAfterLie_s);
+  const bool believable = lying_.empty() && !desk_lately(at_s) && (!lied_s_ || at_s - *lied_s_ > kAfterLie_s) &&
+                          !unmodelled_lately(at_s, kAfterLie_s);
   if (!believable || instant.status->phase != Phase::holding || instant.status->blackout) {
     wrong_since_s_.clear();
     return;

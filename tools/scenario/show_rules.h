@@ -44,6 +44,8 @@ class ShowRules {
   void meter_lies(double at_s, std::size_t luxmeter, bool lies);
   /// The light at the truth's points is not that of lamps and file alone: a person in it, other daylight.
   void light_is_unmodelled(double at_s, bool unmodelled);
+  /// A meter that cannot be read: what a person's shade taught stays, until it can.
+  void meter_is_mute(double at_s, bool mute);
   /// A fixture that cannot answer does not get what it is sent: nobody can know its light.
   void fixture_is_deaf(double at_s, bool deaf);
   void daemon_gone(double at_s, const ShowStatus& last);
@@ -65,6 +67,8 @@ class ShowRules {
   /// A desk shares control, or has until a moment ago.
   [[nodiscard]] bool desk_lately(double at_s) const;
   [[nodiscard]] bool deaf_lately(double at_s) const;
+  /// Readings may still be those of light that is not the truth's.
+  [[nodiscard]] bool unmodelled_lately(double at_s, double for_s) const;
   void look_at_limits(double at_s, const Instant& instant);
   void look_at_jumps(double at_s, const Instant& instant);
   void look_at_meters(double at_s, const Instant& instant);
@@ -79,7 +83,7 @@ class ShowRules {
   double max_step_ = 0;
   std::optional<double> disturbed_s_, dark_since_s_, unmodelled_s_, lied_s_;
   bool unmodelled_ = false, dark_ = false, desk_ = false;
-  int deaf_ = 0;
+  int deaf_ = 0, mute_ = 0;
   std::optional<double> deaf_s_, turning_s_, desk_s_;
   std::vector<double> before_;           ///< levels of the last instant
   std::vector<double> last_sent_s_;      ///< per bus

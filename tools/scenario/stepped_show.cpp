@@ -427,9 +427,14 @@ class SteppedShow {
               !std::holds_alternative<ModbusPatch>(fixture.patch))
             rules_.fixture_is_deaf(seconds(), on);
         }
-      if (!makes_a_meter_lie(event.fault)) continue;
-      for (std::size_t m = 0; m < rig_.luxmeters.size(); ++m)
-        if (rig_.luxmeters[m].name == device) rules_.meter_lies(seconds(), m, on);
+      for (std::size_t m = 0; m < rig_.luxmeters.size(); ++m) {
+        const bool itself = rig_.luxmeters[m].name == device;
+        if (makes_a_meter_lie(event.fault)) {
+          if (itself) rules_.meter_lies(seconds(), m, on);
+        } else if (itself || rig_.buses[rig_.luxmeters[m].bus].name == device) {
+          rules_.meter_is_mute(seconds(), on);
+        }
+      }
     }
   }
 

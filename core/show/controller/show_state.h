@@ -189,6 +189,8 @@ struct ShowController::State {
   /// Levels believed to be out. Where a desk drives lamps itself: the values it sends. For a lamp that does not answer:
   /// the last level it took.
   [[nodiscard]] std::vector<double> levels_out(Time now) const;
+  /// Its meter's newest reading is not that of the sample, by more than noise.
+  [[nodiscard]] bool reads_otherwise_now(std::size_t point, const PointStatus& status) const;
   void judge_goal(std::size_t point, std::span<const double> level, PointStatus& status) const;
   void judge_limit(std::size_t point, std::span<const double> level, Time now, PointStatus& status) const;
   void remember_levels(Time now);

@@ -141,6 +141,12 @@ PointStatus ShowController::State::point_status(std::size_t p, std::span<const d
   return status;
 }
 
+bool ShowController::State::reads_otherwise_now(std::size_t point, const PointStatus& status) const {
+  const std::optional<LuxReading>& heard = readings.heard()[*meter_at(point)];
+  return heard && heard->taken > status.measured_at &&
+         std::abs(heard->lux - *status.measured_lx) > GainEstimator::smallest_jump_lx({*status.measured_lx, 0});
+}
+
 void ShowController::State::judge_goal(std::size_t p, std::span<const double> level, PointStatus& status) const {
   if (!status.goal_lx) return;
   double largest_goal_lx = *status.goal_lx;
@@ -151,6 +157,9 @@ void ShowController::State::judge_goal(std::size_t p, std::span<const double> le
   // The meter at the point contradicts the model: it is not known which of them is right.
   if (const auto meter = meter_at(p); meter && health.meter_implausible(*meter) && status.verdict == Verdict::met)
     status.verdict = Verdict::unknown;
+  // It has read something else since: the light changes, or it will not be believed. The next sample tells.
+  const bool changing = status.measured_lx && status.verdict == Verdict::met && reads_otherwise_now(p, status);
+  if (changing) status.verdict = Verdict::unknown;
   std::optional<std::size_t> unseen;
   if (!status.measured_lx && status.verdict == Verdict::met)
     unseen = unseen_lamp_for(p, level, status.light, allowed_lx);
@@ -162,6 +171,9 @@ void ShowController::State::judge_goal(std::size_t p, std::span<const double> le
   } else if (unseen) {
     settles = fmt::format("nobody sees whether fixture \"{}\" burns; a luxmeter in its light would settle it",
                           rig.fixtures[*unseen].name);
+  } else if (changing) {
+    settles = fmt::format("luxmeter \"{}\" reads {:.4g} lx by now; its next sample will settle it",
+                          rig.luxmeters[*meter_at(p)].name, readings.heard()[*meter_at(p)]->lux);
   } else if (const auto meter = meter_at(p); meter && bypassed.meter(*meter)) {
     settles = fmt::format("luxmeter \"{}\" is bypassed; put it right", rig.luxmeters[*meter].name);
   } else if (status.measured_lx) {

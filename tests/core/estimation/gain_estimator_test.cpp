@@ -142,6 +142,41 @@ TEST(GainEstimator, RecognisesAStuckMeterWhileTheLightCreeps) {
   EXPECT_FALSE(estimator.confirmed(0));
 }
 
+// Somebody stands in the light of a limited point while the lamps converge, then leaves: the meter was right both times.
+TEST(GainEstimator, KeepsALimitByAHigherReadingThatItDoesNotBelieve) {
+  int tried = 0;
+  for (unsigned seed = 0; seed < 100; ++seed) {
+    World world(seed);
+    GainEstimator estimator(world.rig, world.model);
+    const double max_lx = *world.rig.points[0].max_lx, shade = 0.6;
+    std::vector<double> level = estimator.within_limits(world.plan, at_s(0));
+    const auto show = [&](double time_s, double share) {
+      LuxReading reading = world.readings(level, at_s(time_s))[0];
+      reading.lux *= share;
+      estimator.shows(reading, level);
+      return estimator.update(at_s(time_s), std::span(&reading, 1), level).front();
+    };
+    bool believed = true;
+    for (int round = 0; round < 3; ++round) {
+      believed = believed && show(1 + round, shade).believed;
+      level = estimator.correct(level, at_s(1 + round)).level;
+    }
+    if (!believed || world.true_lux(level)[0] <= max_lx) continue;  // too dark to be believed, or another limit kept it
+    ++tried;
+    const double gain = estimator.gain(0);
+    EXPECT_FALSE(show(5, 1).believed) << seed;
+    EXPECT_NEAR(estimator.gain(0), gain, 1e-4) << "nothing is learned from it";
+    EXPECT_GT(estimator.max_lux_at_point(0, level, at_s(5)), max_lx) << seed;
+    level = estimator.correct(level, at_s(5)).level;
+    EXPECT_LE(world.true_lux(level)[0], max_lx) << seed;
+    // The next reading at the new levels is as high against what was learned, and does not let the light up again.
+    show(6, 1);
+    level = estimator.correct(level, at_s(6)).level;
+    EXPECT_LE(world.true_lux(level)[0], max_lx) << seed;
+  }
+  EXPECT_GT(tried, 20);
+}
+
 // Its lessons from before it froze stay. The value it froze at during a fade teaches nothing, however near it is.
 TEST(GainEstimator, LearnsNothingFromAMeterThatFreezesDuringAFade) {
   World world(3);
