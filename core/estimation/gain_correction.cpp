@@ -65,8 +65,36 @@ MatrixXd GainEstimator::fixtures_per_light(const VectorXd& present) const {
   return per_light.leftCols(lights);
 }
 
-Correction GainEstimator::correct(std::span<const double> present, Time now, bool at_once) const {
+/// Why the levels that `problem` asks for miss goals. on_or_off, held: lights, which are set as in `set`.
+void GainEstimator::explain(const EmittanceProblem& problem, const MatrixXd& lux_per_level,
+                            const std::vector<Index>& on_or_off, const std::vector<Index>& held, const VectorXd& set,
+                            const std::vector<Row>& rows, Correction& correction) const {
+  const auto solution = solve_emittance(problem);
+  if (!solution) return;
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const PointOutcome& outcome = solution->points[i];
+    std::string& why = correction.why[i];
+    why = outcome.reason;
+    if (why.empty()) continue;
+    for (const Index k : on_or_off)
+      if (set[k] == 0 && lux_per_level(static_cast<Index>(i), k) > 0)
+        why += fmt::format(" ('{}', which is on or off, stays off)", problem.light_name[static_cast<std::size_t>(k)]);
+    std::string by_hand;
+    for (const Index k : held)
+      if (lux_per_level(static_cast<Index>(i), k) > 0)
+        by_hand += fmt::format("{}'{}'", by_hand.empty() ? "" : ", ", problem.light_name[static_cast<std::size_t>(k)]);
+    if (!by_hand.empty()) why += fmt::format(" ({} held by hand)", by_hand);
+    if (outcome.limit_points.empty()) continue;
+    const auto first = static_cast<std::size_t>(outcome.limit_points.front());
+    why += fmt::format(" (of the limit of {:.4g} lx, {:.3g} lx are kept free for the error of {})",
+                       *points_[first].max_lx, *points_[first].max_lx - problem.max_lx[static_cast<Index>(first)],
+                       rows[first].luxmeter ? "the meter" : "the model: no meter confirms it");
+  }
+}
+
+Correction GainEstimator::correct(std::span<const double> present, Time now, For what) const {
   EmittanceProblem problem;
+  problem.explained = false;
   const auto points = static_cast<Index>(points_.size());
   const VectorXd present_level = vector_of(present).head(fixtures()).cwiseMax(0).cwiseMin(max_level_);
   const MatrixXd per_light = fixtures_per_light(present_level);
@@ -113,7 +141,7 @@ Correction GainEstimator::correct(std::span<const double> present, Time now, boo
   for (Index j = 0; j < lights && points > 0; ++j) {
     const double brightest = problem.lux_per_level.col(j).head(points).maxCoeff();
     problem.lux_per_level(points + j, j) = brightest;
-    if (brightest > 0 && !at_once) problem.goal_lx[points + j] = brightest * problem.near_level[j];
+    if (brightest > 0 && what != For::hands) problem.goal_lx[points + j] = brightest * problem.near_level[j];
   }
 
   // Lamps that do not respond are fixed light.
@@ -148,17 +176,19 @@ Correction GainEstimator::correct(std::span<const double> present, Time now, boo
   // Limits hold for the worst case, which depends on the new levels: solve, check, tighten, solve again.
   for (int round = 0; round < kLimitRounds; ++round) {
     bool over = round == 0;
+    VectorXd max_lx = problem.max_lx;
     for (Index i = 0; i < points; ++i) {
-      const auto& max_lx = points_[static_cast<std::size_t>(i)].max_lx;
-      if (!max_lx) continue;
+      const auto& limit_lx = points_[static_cast<std::size_t>(i)].max_lx;
+      if (!limit_lx) continue;
       const Row& row = rows[static_cast<std::size_t>(i)];
-      const double day_lx = max_without_fixtures(row, now), room = std::max(0.0, *max_lx - day_lx);
+      const double day_lx = max_without_fixtures(row, now), room = std::max(0.0, *limit_lx - day_lx);
       const double lux = lux_per_level.row(i).dot(level);
       const double most = max_lux(row, vector_of(list_of(per_light * level)), now) - day_lx;
       over = over || most > room;
-      problem.max_lx[i] = daylight_lx[i] + (lux > 0 && most > 0 ? room * std::min(1.0, lux / most) : room / local_);
+      max_lx[i] = daylight_lx[i] + (lux > 0 && most > 0 ? room * std::min(1.0, lux / most) : room / local_);
     }
     if (!over) break;
+    problem.max_lx = std::move(max_lx);
     keep_within(problem.max_lx, daylight_lx, lux_per_level, held, set);
     problem.fixed_lx.head(points) = daylight_lx + lux_per_level * set;
     problem.max_lx = problem.max_lx.cwiseMax(problem.fixed_lx);  // already so, except for rounding
@@ -166,26 +196,10 @@ Correction GainEstimator::correct(std::span<const double> present, Time now, boo
     const auto solution = solve_emittance(problem);
     if (!solution) break;
     level = solution->level + set;
-    for (std::size_t i = 0; i < points_.size(); ++i) {
-      const PointOutcome& outcome = solution->points[i];
-      correction.why[i] = outcome.reason;
-      for (const Index k : on_or_off)
-        if (!outcome.reason.empty() && set[k] == 0 && lux_per_level(static_cast<Index>(i), k) > 0)
-          correction.why[i] +=
-              fmt::format(" ('{}', which is on or off, stays off)", problem.light_name[static_cast<std::size_t>(k)]);
-      std::string by_hand;
-      for (const Index k : held)
-        if (!outcome.reason.empty() && lux_per_level(static_cast<Index>(i), k) > 0)
-          by_hand +=
-              fmt::format("{}'{}'", by_hand.empty() ? "" : ", ", problem.light_name[static_cast<std::size_t>(k)]);
-      if (!by_hand.empty()) correction.why[i] += fmt::format(" ({} held by hand)", by_hand);
-      if (outcome.limit_points.empty()) continue;
-      const auto first = static_cast<std::size_t>(outcome.limit_points.front());
-      correction.why[i] +=
-          fmt::format(" (of the limit of {:.4g} lx, {:.3g} lx are kept free for the error of {})",
-                      *points_[first].max_lx, *points_[first].max_lx - problem.max_lx[static_cast<Index>(first)],
-                      rows[first].luxmeter ? "the meter" : "the model: no meter confirms it");
-    }
+  }
+  if (what != For::drift) {
+    problem.explained = true;
+    explain(problem, lux_per_level, on_or_off, held, set, rows, correction);
   }
   correction.level = within_limits(list_of((per_light * level).cwiseMin(max_level_)), now);
   for (std::size_t j = 0; j < correction.level.size(); ++j)

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 
@@ -154,7 +155,13 @@ double GainEstimator::covariance(const Row& one, const VectorXd& one_level, cons
   return sum;
 }
 
+void GainEstimator::knows_more() {
+  static std::atomic<std::uint64_t> newest{0};  // of all estimators: one may replace another
+  knowledge_ = ++newest;
+}
+
 void GainEstimator::estimate(Time now) {
+  knows_more();
   const Index columns = meter_.cols(), meters = meter_.rows(), count = static_cast<Index>(evidence_.size());
   gain_ = VectorXd::Constant(columns, prior_gain_);
   gain_error_ = VectorXd::Constant(columns, prior_gain_sd_);

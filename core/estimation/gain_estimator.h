@@ -59,7 +59,8 @@ struct WorstCase {
 struct Correction {
   std::vector<double> level;     ///< per fixture; within max_level and, in the worst case of the evidence, all limits
   std::vector<double> aimed_lx;  ///< per point of the rig: present prediction at `level`
-  std::vector<std::string> why;  ///< per point: why it misses its goal; empty if it does not or has none
+  std::vector<std::string>
+      why;  ///< per point: why it misses its goal; empty if it does not, has none, or in For::drift
 };
 
 /// The levels of a show before any luxmeter is read: within the limits, with the margins that then apply. One per
@@ -67,8 +68,15 @@ struct Correction {
 [[nodiscard]] std::vector<double> opening_levels(const Rig& rig, const LightModel& model,
                                                  std::span<const double> level);
 
+struct EmittanceProblem;
+
 class GainEstimator {
  public:
+  enum class For {
+    round,  ///< only readings are new: the lights of unmetered goals stay near their present levels
+    drift,  ///< the same, only to see how much would change: nobody is told why
+    hands   ///< the wanted light has just been changed: unmetered goals may move levels all the way
+  };
   static constexpr double kRepeatability = 0.005;  ///< standard deviation, share of a reading; beside its tolerance
 
   /// Uses the rig's fixtures (max_level), luxmeters, points, limits and control. The model's matrices must have the
@@ -107,6 +115,7 @@ class GainEstimator {
   struct Lost {
     double level = 0;  ///< the last that it accepted
     double most = 0;   ///< highest that it may have by now; above `level` if its behaviour without data is unknown
+    friend bool operator==(const Lost&, const Lost&) = default;
   };
   /// lost: per fixture; none = it responds. watched: per luxmeter, 1 = it is read and shows no more than its point's
   /// limit. The light of a lost lamp beyond its last level counts only where no meter would show it, and only if
@@ -146,6 +155,8 @@ class GainEstimator {
   /// Upper bound of the fixture's gain: estimate + 3 standard errors, at most gain_max.
   [[nodiscard]] double upper_gain(std::size_t fixture) const;
 
+  /// A number that changes with everything learned: predictions at the same levels differ only with it.
+  [[nodiscard]] std::uint64_t knowledge() const { return knowledge_; }
   [[nodiscard]] Prediction at_point(std::size_t point, std::span<const double> level) const;
   [[nodiscard]] Prediction at_meter(std::size_t luxmeter, std::span<const double> level) const;
 
@@ -183,10 +194,8 @@ class GainEstimator {
   /// emitters of one housing keep their shares, and so its colour. A metered goal comes before unmetered ones.
   /// On-or-off fixtures stay as they are, unless a limit wants them off (no contactor should wear out for a few lux).
   /// Fixtures held by hand stay, too; if limits leave too little for all, the others dim first.
-  /// at_once: the wanted light has just been changed, so unmetered goals may move levels all the way. Otherwise, only
-  /// readings are new, and these levels stay near the present ones.
   /// Never fails: if the solver is stopped or refuses, returns the present levels within limits.
-  [[nodiscard]] Correction correct(std::span<const double> level, Time now, bool at_once = false) const;
+  [[nodiscard]] Correction correct(std::span<const double> level, Time now, For what = For::round) const;
 
  private:
   struct Evidence {
@@ -238,6 +247,10 @@ class GainEstimator {
   }
   [[nodiscard]] Eigen::Index fixtures() const { return max_level_.size(); }
   [[nodiscard]] Eigen::MatrixXd fixtures_per_light(const Eigen::VectorXd& present) const;
+  void knows_more();
+  void explain(const EmittanceProblem& problem, const Eigen::MatrixXd& lux_per_level,
+               const std::vector<Eigen::Index>& on_or_off, const std::vector<Eigen::Index>& held,
+               const Eigen::VectorXd& set, const std::vector<Row>& rows, Correction& correction) const;
   void switch_off_brightest(const Row& row, std::span<double> level) const;
   [[nodiscard]] double max_without_fixtures(const Row& row, Time now) const;
   void learn(const LuxReading& reading, const Eigen::VectorXd& level);
@@ -264,6 +277,7 @@ class GainEstimator {
   /// meter may be right now (somebody stood in the light before), so limits hold by it. Until a reading is believed.
   std::vector<std::optional<Evidence>> over_;
   std::vector<Meter> meters_;
+  std::uint64_t knowledge_ = 0;
   Eigen::LDLT<Eigen::MatrixXd> innovation_;  ///< covariance of the evidence
   Eigen::VectorXd gain_, gain_error_;
   Eigen::MatrixXd factor_, factor_error_;  ///< x: luxmeters × columns

@@ -87,6 +87,7 @@ RowVectorXd GainEstimator::without_lost(RowVectorXd row) const {
 }
 
 void GainEstimator::set_lost(std::vector<std::optional<Lost>> lost, std::vector<std::uint8_t> watched) {
+  if (lost != lost_) knows_more();
   lost_ = std::move(lost);
   watched_ = std::move(watched);
 }

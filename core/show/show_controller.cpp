@@ -248,7 +248,7 @@ void ShowController::State::start_cue(Time now, std::vector<double> levels) {
   // Levels held by hand go out at once; the rest follows when it is solved around them.
   if (unsolved && !solving.has_runner()) {
     unsolved = false;
-    Correction correction = estimator.correct(asked, now, true);
+    Correction correction = estimator.correct(asked, now, GainEstimator::For::hands);
     progress.take_aims(correction);
     asked = std::move(correction.level);
   }

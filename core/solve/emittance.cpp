@@ -345,7 +345,7 @@ Result<EmittanceSolution> solve_emittance(const EmittanceProblem& given, const W
       error = std::hypot(error, distance_lx(p, i, light));
       goals = std::hypot(goals, goal_norm_lx(p, i));
     }
-    if (misses_goal(p, i, light)) {
+    if (p.explained && misses_goal(p, i, light)) {
       if (!what_if) {
         auto lifted = what_if_lifted(p, held, watch);
         if (!lifted) return tl::unexpected(lifted.error());

@@ -38,6 +38,7 @@ struct EmittanceProblem {
   /// Per light: it is either off or at max_level (finite), as on a relay; empty = all dim.
   std::vector<bool> switched{};
   std::vector<std::string> point_name, light_name;  ///< for the reasons; empty = "point 3", counted from 0
+  bool explained = true;  ///< false: no reasons. They take up to four more solves where a goal is missed
 };
 
 /// Why a point misses its goal.

@@ -158,6 +158,8 @@ Disturbance Faults::disturbance(std::span<const std::string> devices, std::uint6
   if (on_.empty()) return disturbance;
   disturbance.random = random_bits(seed_, Draw::fault_garble, 0, counter);
   for (std::size_t d = 0; d < devices.size(); ++d) {
+    const auto first = on_.lower_bound({devices[d], FaultKind{}});
+    if (first == on_.end() || first->first.first != devices[d]) continue;
     const auto value = [&](FaultKind kind) {
       const auto found = on_.find({devices[d], kind});
       return found == on_.end() ? std::nullopt : std::optional(found->second);

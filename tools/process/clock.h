@@ -20,10 +20,13 @@ inline std::atomic<const std::atomic<Time>*> stepped_time{nullptr};
   return Time(std::chrono::seconds(t.tv_sec) + std::chrono::nanoseconds(t.tv_nsec));
 }
 
+/// With stepped time: by how much the wall clock is ahead of it [s].
+inline std::atomic<double> stepped_wall_ahead_s{0};
+
 /// Wall-clock time [s since 1970], for what is saved. With stepped time: that, since its own beginning.
 [[nodiscard]] inline double unix_now_s() {
   if (const auto* stepped = stepped_time.load(std::memory_order_acquire))
-    return to_seconds(stepped->load().time_since_epoch());
+    return to_seconds(stepped->load().time_since_epoch()) + stepped_wall_ahead_s;
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 

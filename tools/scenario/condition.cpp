@@ -47,9 +47,9 @@ struct RelationName {
   Relation relation;
   std::string_view name;
 };
-constexpr RelationName kRelations[] = {{Relation::less, "<"},   {Relation::at_most, "<="},
-                                       {Relation::more, ">"},   {Relation::at_least, ">="},
-                                       {Relation::equal, "=="}, {Relation::not_equal, "!="}};
+constexpr RelationName kRelations[] = {
+    {Relation::less, "<"},   {Relation::at_most, "<="},   {Relation::more, ">"},         {Relation::at_least, ">="},
+    {Relation::equal, "=="}, {Relation::not_equal, "!="}, {Relation::between, "between"}};
 
 const Subject& subject_of(Of of) {
   return *std::find_if(std::begin(kSubjects), std::end(kSubjects), [of](const Subject& s) { return s.of == of; });
@@ -185,23 +185,63 @@ class ConditionReader {
       wrong(next_,
             has() ? fmt::format("{} is no comparison", in_quotes(words_[next_].text))
                   : fmt::format("{} is not compared with anything", subject.name),
-            "write <, <=, >, >=, == or != with a space on each side");
+            "write <, <=, >, >=, ==, != or between, with a space on each side");
       return false;
     }
     condition.relation = relation->relation;
     ++next_;
-    if (!has()) {
-      wrong(next_, "the number is missing", fmt::format("add it after {}", relation->name));
+    const auto unit = [&] { next_ += has() && !subject.unit.empty() && words_[next_].text == subject.unit; };
+    const auto word = [&](std::string_view wanted) {
+      const bool there = has() && words_[next_].text == wanted;
+      next_ += there;
+      return there;
+    };
+    if (!read_number(relation->name, condition.value)) return false;
+    unit();
+    if (condition.relation == Relation::between) {
+      if (!word("and")) {
+        wrong(next_, "between has one number", "write two: between 45 and 50");
+        return false;
+      }
+      const std::size_t at = next_;
+      if (!read_number("and", condition.most)) return false;
+      unit();
+      if (condition.most < condition.value) {
+        wrong(at, fmt::format("nothing lies between {:g} and {:g}", condition.value, condition.most),
+              "write the lower number first");
+        return false;
+      }
+    } else if (condition.relation == Relation::equal && (word("+-") || word("±"))) {
+      const std::size_t at = next_;
+      double tolerance = 0;
+      if (!read_number("+-", tolerance)) return false;
+      if (tolerance < 0) {
+        wrong(at, fmt::format("a tolerance of {:g} is below 0", tolerance), "write how far off it may be");
+        return false;
+      }
+      if (word("%"))
+        tolerance *= std::abs(condition.value) / 100;
+      else
+        unit();
+      condition.relation = Relation::between;
+      condition.most = condition.value + tolerance;
+      condition.value -= tolerance;
+    }
+    return true;
+  }
+
+  bool read_number(std::string_view after, double& value) {
+    if (next_ == words_.size()) {
+      wrong(next_, "the number is missing", fmt::format("add it after {}", after));
       return false;
     }
     const std::string& number = words_[next_].text;
-    const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), condition.value);
-    if (error != std::errc() || end != number.data() + number.size() || !std::isfinite(condition.value)) {
+    const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
+    if (error != std::errc() || end != number.data() + number.size() || !std::isfinite(value)) {
       wrong(next_, fmt::format("{} is not a number", in_quotes(number)), "write one, as 50 or 0.95");
       return false;
     }
     ++next_;
-    if (has() && !subject.unit.empty() && words_[next_].text == subject.unit) ++next_;
     return true;
   }
 
@@ -290,6 +330,8 @@ bool holds(const Condition& c, double value) {
       return value == c.value;
     case Relation::not_equal:
       return value != c.value;
+    case Relation::between:
+      return value >= c.value && value <= c.most;
   }
   return false;
 }

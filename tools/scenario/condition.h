@@ -5,7 +5,8 @@
 ///   SUBJECT RELATION NUMBER                 met, missed, unknown, alarms
 ///   phase NAME · blackout · alarm TEXT
 ///
-/// RELATION: < <= > >= == !=. A NAME with spaces stands in single or double quotes; * and ? match several.
+/// RELATION: < <= > >= == !=. In place of RELATION NUMBER also `between NUMBER and NUMBER`, and `== NUMBER +- NUMBER`
+/// or `== NUMBER +- NUMBER %` for a figure with its tolerance. A NAME with spaces stands in single or double quotes; * and ? match several.
 
 #include <string_view>
 

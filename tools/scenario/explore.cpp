@@ -36,7 +36,10 @@ class ShowDrawer {
 
   std::vector<Event> events() {
     std::vector<Event> events(2 + below(9));
-    for (Event& event : events) event = this->event();
+    for (std::size_t e = 0; e < events.size(); ++e) {
+      events[e] = event();
+      events[e].at_s = time_near(events, e);
+    }
     std::sort(events.begin(), events.end(), [](const Event& a, const Event& b) { return a.at_s < b.at_s; });
     return events;
   }
@@ -49,9 +52,18 @@ class ShowDrawer {
   }
   std::string one_of(const std::vector<std::string>& names) { return names[below(names.size())]; }
 
+  /// Most mistakes show while something goes on: at the start, and soon after another event or its end.
+  double time_near(const std::vector<Event>& events, std::size_t e) {
+    const std::size_t kind = below(4);
+    if (kind == 0) return tenths(0, 6);
+    if (kind == 1 || e == 0) return tenths(1, length_s_ - 5);
+    const Event& other = events[below(e)];
+    const double begins_s = other.at_s + (kind == 2 ? 0 : other.for_s.value_or(0));
+    return std::min(std::round(10 * begins_s) / 10 + tenths(0, 3), std::round(length_s_ - 5));
+  }
+
   Event event() {
     Event event;
-    event.at_s = tenths(1, length_s_ - 5);
     if (below(2) == 0) {
       event.what = What::fault;
       event.fault = faults_[below(faults_.size())];
@@ -80,9 +92,10 @@ class ShowDrawer {
       }
       return event;
     }
-    constexpr Chance chances[] = {{What::blackout, 3}, {What::level, 4}, {What::goal, 3},   {What::release, 1},
-                                  {What::apply, 2},    {What::park, 1},  {What::bypass, 2}, {What::cover, 2},
-                                  {What::shade, 2},    {What::stop, 1},  {What::kill, 2},   {What::power_cut, 1}};
+    constexpr Chance chances[] = {{What::blackout, 3},  {What::level, 4}, {What::goal, 3},   {What::release, 1},
+                                  {What::apply, 2},     {What::park, 1},  {What::bypass, 2}, {What::cover, 2},
+                                  {What::shade, 2},     {What::stop, 1},  {What::kill, 2},   {What::power_cut, 1},
+                                  {What::clock_step, 1}};
     std::size_t all = 0;
     for (const Chance& chance : chances) all += chance.weight;
     std::size_t at = below(all);
@@ -122,6 +135,9 @@ class ShowDrawer {
         break;
       case What::blackout:
         if (below(4) != 0) event.for_s = tenths(0.2, 20);
+        break;
+      case What::clock_step:
+        event.value = std::round(tenths(-1e5, 1e5));
         break;
       case What::stop:
       case What::kill:

@@ -32,12 +32,12 @@ struct Condition {
     alarm,
     blackout
   };
-  enum class Relation { less, at_most, more, at_least, equal, not_equal };
+  enum class Relation { less, at_most, more, at_least, equal, not_equal, between };
 
   Of of = Of::phase;
   std::vector<std::size_t> which;  ///< points, luxmeters or fixtures of the rig
   Relation relation = Relation::equal;
-  double value = 0;
+  double value = 0, most = 0;  ///< between: from value to most, both included
   Phase phase = Phase::idle;
   std::string text;     ///< alarm: part of "device: text"
   std::string written;  ///< as in the file
@@ -58,6 +58,7 @@ struct Event {
     cover,
     shade,
     daylight,
+    clock_step,
     stop,
     kill,
     power_cut,

@@ -43,6 +43,7 @@ constexpr Needs kNeeds[] = {
     {What::cover, Needs::On::must, Needs::Value::must, 0, 1, true, "luxmeters"},
     {What::shade, Needs::On::must, Needs::Value::must, 0, 1, true, "points"},
     {What::daylight, Needs::On::none, Needs::Value::must, 0, 1000, true, ""},
+    {What::clock_step, Needs::On::none, Needs::Value::must, -1e6, 1e6, false, ""},
     {What::stop, Needs::On::none, Needs::Value::none, 0, 0, true, ""},
     {What::kill, Needs::On::none, Needs::Value::none, 0, 0, true, ""},
     {What::power_cut, Needs::On::none, Needs::Value::none, 0, 0, true, ""},

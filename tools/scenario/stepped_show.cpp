@@ -78,6 +78,7 @@ class SteppedShow {
                     [](const Event& event) { return ends_the_daemon(event.what); }))
       state_.emplace();
     time_ = kBegin;
+    stepped_wall_ahead_s = 0;
     stepped_time = &time_;
   }
   SteppedShow(const SteppedShow&) = delete;
@@ -352,6 +353,9 @@ class SteppedShow {
       case What::daylight:
         devices_.world().set_daylight(*event.value);
         return rules_.light_is_unmodelled(seconds(), true);
+      case What::clock_step:
+        stepped_wall_ahead_s = stepped_wall_ahead_s + *event.value;
+        return;
       case What::stop:
       case What::kill:
       case What::power_cut:

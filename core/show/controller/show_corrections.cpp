@@ -99,7 +99,7 @@ void ShowController::State::take_solved(Time now) {
   }
   if (!holds || (phase != Phase::measuring && phase != Phase::holding)) return;
   if (solved.what == SolveBeside::For::round) return correct_or_hold(now, std::move(solved.correction));
-  look_at_drift(now, std::move(solved.correction));
+  look_at_drift(now, solved.correction);
 }
 
 /// After a sample: another round if it would bring a metered goal nearer, or if a limit is in question.
@@ -141,10 +141,10 @@ void ShowController::State::watch_drift(Time now) {
   solve(now, progress.breaches.empty() ? SolveBeside::For::drift : SolveBeside::For::round);
 }
 
-void ShowController::State::look_at_drift(Time now, Correction correction) {
+void ShowController::State::look_at_drift(Time now, const Correction& correction) {
   progress.drifted = possible_gain(correction) > rig.control.tolerance ? progress.drifted + 1 : 0;
   if (progress.drifted >= kDriftSamples && now - progress.corrected_at >= kDriftCorrectionEvery)
-    correct_or_hold(now, std::move(correction));
+    solve(now, SolveBeside::For::round);
 }
 
 /// A meter that contradicts only its own past may have been right then, or may be right now. Trusting it now could

@@ -10,6 +10,7 @@
 #include "core/estimation/gain_estimator.h"
 #include "core/show/bypass_list.h"
 #include "core/show/controller/correction_progress.h"
+#include "core/show/controller/predicted_light.h"
 #include "core/show/controller/shared_control.h"
 #include "core/show/controller/solve_beside.h"
 #include "core/show/hand_settings.h"
@@ -40,6 +41,7 @@ struct ShowController::State {
 
   Rig rig;
   GainEstimator estimator;
+  mutable PredictedLight predicted;
   HealthWatch health;
   MeterReadings readings;
   ScaleWatch scale;
@@ -124,7 +126,7 @@ struct ShowController::State {
   void take_solved(Time now);
   void drop_solving();
   void correct_or_hold(Time now, Correction correction);
-  void look_at_drift(Time now, Correction correction);
+  void look_at_drift(Time now, const Correction& correction);
   void watch_drift(Time now);
   void doubt_the_past(Time now);
   void look_at_failures(Time now);

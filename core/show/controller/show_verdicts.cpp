@@ -74,9 +74,9 @@ bool ShowController::State::any_lamp_lost() const {
 
 double ShowController::State::in_doubt_for_lost_lamps_lx(std::size_t point, std::span<const double> level) const {
   if (!any_lamp_lost()) return 0;
-  const double lux = estimator.at_point(point, level).lux;
-  return std::max(lux - estimator.at_point(point, with_lost_lamps_at(level, false)).lux,
-                  estimator.at_point(point, with_lost_lamps_at(level, true)).lux - lux);
+  const double lux = predicted.at_point(estimator, point, level).lux;
+  return std::max(lux - predicted.at_point(estimator, point, with_lost_lamps_at(level, false)).lux,
+                  predicted.at_point(estimator, point, with_lost_lamps_at(level, true)).lux - lux);
 }
 
 bool ShowController::State::seen_by_a_meter(std::size_t fixture, std::span<const double> level) const {
@@ -84,7 +84,7 @@ bool ShowController::State::seen_by_a_meter(std::size_t fixture, std::span<const
   chosen[fixture] = 1;
   for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) {
     if (!readings.measured()[i] || health.meter_lost(i)) continue;
-    const Prediction there = estimator.at_meter(i, level);
+    const Prediction& there = predicted.at_meter(estimator, i, level);
     const double its_lx = level[fixture] * estimator.share_at_meter(i, chosen, level) * there.lux;
     if (its_lx >= kSurelySeen * GainEstimator::smallest_jump_lx(there)) return true;
   }
@@ -113,7 +113,7 @@ LuxEstimate ShowController::State::light_by_model(std::size_t point, std::span<c
 PointStatus ShowController::State::point_status(std::size_t p, std::span<const double> level, Time now) const {
   PointStatus status;
   status.goal_lx = points_in_force[p].goal_lx;
-  const Prediction prediction = estimator.at_point(p, level);
+  const Prediction prediction = predicted.at_point(estimator, p, level);
   status.predicted_lx = prediction.lux;
   status.standard_error_lx = prediction.standard_error_lx;
   if (const auto meter = meter_at(p); meter && !health.meter_lost(*meter)) {

@@ -10,18 +10,17 @@ void SolveBeside::start(For what, const GainEstimator& estimator, std::vector<do
   task_ = std::make_shared<Task>();
   task_->what = what;
   task_->facts = facts_;
-  const bool for_hands = what == For::hands;
   if (!runner_) {
-    task_->correction = estimator.correct(levels, now, for_hands);
+    task_->correction = estimator.correct(levels, now, what);
     task_->done = true;
     return;
   }
   // The task owns everything it uses.
-  runner_([to = task_, known = std::make_shared<const GainEstimator>(estimator), levels = std::move(levels), now,
-           for_hands] {
-    to->correction = known->correct(levels, now, for_hands);
-    to->done = true;
-  });
+  runner_(
+      [to = task_, known = std::make_shared<const GainEstimator>(estimator), levels = std::move(levels), now, what] {
+        to->correction = known->correct(levels, now, what);
+        to->done = true;
+      });
 }
 
 SolveBeside::Solved SolveBeside::take() {

@@ -14,7 +14,7 @@ namespace luxrig {
 
 class SolveBeside {
  public:
-  enum class For { round, drift, hands };
+  using For = GainEstimator::For;
   /// Runs a task once, on any thread.
   using Runner = std::function<void(std::function<void()>)>;
 

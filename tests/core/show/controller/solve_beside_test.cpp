@@ -24,7 +24,7 @@ TEST_F(SolveBesideTest, WithoutARunnerItIsDoneAtOnce) {
   const SolveBeside::Solved solved = solving.take();
   EXPECT_EQ(solved.what, SolveBeside::For::round);
   EXPECT_TRUE(solved.holds);
-  EXPECT_EQ(solved.correction.level, estimator.correct(hall.plan, Time{}, false).level);
+  EXPECT_EQ(solved.correction.level, estimator.correct(hall.plan, Time{}).level);
   EXPECT_FALSE(solving.running());
 }
 
@@ -36,7 +36,7 @@ TEST_F(SolveBesideTest, WithARunnerItIsDoneWhenThatHasRun) {
   EXPECT_EQ(solving.what(), SolveBeside::For::hands);
   waiting.front()();
   ASSERT_TRUE(solving.done());
-  EXPECT_EQ(solving.take().correction.level, estimator.correct(hall.plan, Time{}, true).level);
+  EXPECT_EQ(solving.take().correction.level, estimator.correct(hall.plan, Time{}, SolveBeside::For::hands).level);
 }
 
 TEST_F(SolveBesideTest, AChangedFactOutdatesIt) {
