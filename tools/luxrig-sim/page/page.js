@@ -13,7 +13,7 @@ function setText(node, text) {
 }
 
 const lux = (value) => value.toFixed(value >= 100 ? 0 : value >= 10 ? 1 : 2);
-const percent = (value) => `${(100 * value).toFixed(value > 0 && value < 0.1 ? 1 : 0)} %`;
+const percent = (value) => `${(100 * value).toFixed(value > 0 && value < 0.1 ? 1 : 0)}\u00a0%`;
 
 function tell(what) {
   $('#refused').hidden = !what;
@@ -47,7 +47,7 @@ function shareSlider(label, onSet) {
   let held = false;
   input.addEventListener('pointerdown', () => (held = true));
   for (const end of ['pointerup', 'pointercancel', 'blur']) input.addEventListener(end, () => (held = false));
-  input.addEventListener('input', () => setText(output, `${input.value} %`));
+  input.addEventListener('input', () => setText(output, percent(input.value / 100)));
   input.addEventListener('change', () => void onSet(Number(input.value) / 100));
   return {
     root: element('div', { className: 'share' }, input, output),
