@@ -138,10 +138,12 @@ Result<std::vector<Descriptor>> hear_broadcasts(int port, std::uint32_t address)
     for (const std::uint32_t to : {interface.broadcast, std::uint32_t{INADDR_BROADCAST}}) {
       auto socket = bound(SOCK_DGRAM, port, to, true);
       if (!socket) return tl::unexpected(socket.error());
-      // 255.255.255.255 is the same on every network. Only this one's is wanted.
-      if (::setsockopt(socket->descriptor.get(), SOL_SOCKET, SO_BINDTODEVICE, interface.name.c_str(),
+      // 255.255.255.255 is the same on every network, and only this one's is wanted. Before Linux 5.7 that needs a
+      // privilege; without it, only the network's own broadcasts are heard.
+      if (to == INADDR_BROADCAST &&
+          ::setsockopt(socket->descriptor.get(), SOL_SOCKET, SO_BINDTODEVICE, interface.name.c_str(),
                        static_cast<socklen_t>(interface.name.size())) != 0)
-        return socket_failed("SO_BINDTODEVICE", to, port);
+        continue;
       sockets.push_back(std::move(socket->descriptor));
     }
   }

@@ -147,8 +147,8 @@ int simulate(const Options& options) {
   }
   fmt::print(stderr, "luxrig-sim: truth and faults: http://127.0.0.1:{}/\n", ports.control);
   if (address >> 24 != sim::kLoopback >> 24)
-    fmt::print(stderr, "luxrig-sim: everybody on the network of {} can drive and read this simulated rig\n",
-               options.listen);
+    fmt::print(stderr, "luxrig-sim: everybody on {} can drive and read this simulated rig\n",
+               address == sim::kAnyAddress ? "the networks of this computer" : "the network of " + options.listen);
   fmt::print("ready {}\n", sim::to_json(ports));
   std::fflush(stdout);
   run(**world, **server, world_mutex);

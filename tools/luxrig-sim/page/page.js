@@ -77,7 +77,7 @@ const listed = (values) => values.join(', ');
 
 function busItem(bus) {
   const place = bus.path ?? `${bus.host}:${bus.port}`;
-  const says = [];
+  const says = bus.host === '0.0.0.0' ? ['on every address of this computer'] : [];
   if (bus.universes) says.push(`${bus.universes.length > 1 ? 'universes' : 'universe'} ${listed(bus.universes)}`);
   if (bus.units) says.push(`${bus.units.length > 1 ? 'units' : 'unit'} ${listed(bus.units)}`);
   if (bus.nodes) says.push(`nodes ${listed(bus.nodes)}`);
