@@ -94,13 +94,19 @@ std::optional<FaultKind> fault_named(std::string_view name) {
 
 std::span<const FaultKind> all_faults() { return kKinds; }
 
+FaultRange range_of(FaultKind kind) {
+  const FaultEntry& entry = entry_of(kind);
+  const bool valued = entry.does.find("value") != std::string_view::npos;
+  return {valued, entry.least, entry.most, entry.fallback, entry.does};
+}
+
 std::string faults_in_words() {
   std::string text;
-  for (const FaultEntry& entry : kFaults) {
-    const bool valued = entry.does.find("value") != std::string_view::npos;
+  for (const FaultKind kind : kKinds) {
+    const FaultRange range = range_of(kind);
     text += fmt::format(
-        "  {:<15} {}{}\n", entry.name, entry.does,
-        valued ? fmt::format("; value {:g} to {:g}, default {:g}", entry.least, entry.most, entry.fallback) : "");
+        "  {:<15} {}{}\n", name_of(kind), range.does,
+        range.valued ? fmt::format("; value {:g} to {:g}, default {:g}", range.least, range.most, range.fallback) : "");
   }
   return text;
 }
@@ -144,6 +150,13 @@ void Faults::clear() {
   ++revision_;
   on_.clear();
   stuck_at_lx_.clear();
+}
+
+std::vector<FaultOn> Faults::all_on() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<FaultOn> on;
+  for (const auto& [of, value] : on_) on.push_back({of.first, of.second, value});
+  return on;
 }
 
 std::optional<double> Faults::find(const std::string& device, FaultKind kind) const {

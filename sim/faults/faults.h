@@ -84,6 +84,21 @@ enum class FaultKind {
 /// One line for each: name, effect, and the value's range and default.
 [[nodiscard]] std::string faults_in_words();
 
+/// A fault that is on.
+struct FaultOn {
+  std::string device;
+  FaultKind kind;
+  double value;
+};
+
+/// What a person may set: `value` has a meaning only if `valued`.
+struct FaultRange {
+  bool valued = false;
+  double least = 0, most = 1, fallback = 1;
+  std::string_view does;  ///< in a few words
+};
+[[nodiscard]] FaultRange range_of(FaultKind kind);
+
 /// Faults of one exchange with a device; by default none.
 struct Disturbance {
   bool silent = false;
@@ -111,6 +126,8 @@ class Faults {
   /// Changes with each switch, so a frequent reader need not query every device.
   [[nodiscard]] std::uint64_t revision() const { return revision_; }
 
+  /// All that are on, by device.
+  [[nodiscard]] std::vector<FaultOn> all_on() const;
   /// Its value if it is on.
   [[nodiscard]] std::optional<double> find(const std::string& device, FaultKind kind) const;
 

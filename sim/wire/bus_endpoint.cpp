@@ -7,9 +7,7 @@ namespace {
 
 struct EndpointEntry {
   std::string_view driver;
-  /// One of the two is set: at a port, or at a path.
-  Result<std::unique_ptr<BusEndpoint>> (*at_port)(const EndpointParts& parts, int port);
-  Result<std::unique_ptr<BusEndpoint>> (*at_path)(const EndpointParts& parts, const std::string& path) = nullptr;
+  Result<std::unique_ptr<BusEndpoint>> (*open)(const EndpointParts& parts, const EndpointPlace& place);
 };
 
 // One line per driver that the simulator can stand in for.
@@ -20,7 +18,7 @@ constexpr EndpointEntry kEndpoints[] = {
     {"open_dmx", open_usb_endpoint},
     {"udmx", open_usb_endpoint},
     {"modbus_tcp", open_modbus_endpoint},
-    {"modbus_rtu", nullptr, open_modbus_rtu_endpoint},
+    {"modbus_rtu", open_modbus_rtu_endpoint},
     {"canopen", open_can_endpoint},
 };
 
@@ -30,9 +28,7 @@ Result<std::unique_ptr<BusEndpoint>> open_endpoint(const EndpointParts& parts, c
   const Bus& bus = parts.rig.buses[parts.bus];
   std::string known;
   for (const EndpointEntry& entry : kEndpoints) {
-    if (entry.driver == bus.driver) {
-      return entry.at_port != nullptr ? entry.at_port(parts, place.port) : entry.at_path(parts, place.path);
-    }
+    if (entry.driver == bus.driver) return entry.open(parts, place);
     known += fmt::format("{}{}", known.empty() ? "" : ", ", entry.driver);
   }
   return tl::unexpected(

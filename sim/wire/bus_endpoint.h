@@ -1,6 +1,6 @@
 #pragma once
-/// The far end of one [[bus]]: a loopback port, or a pseudo terminal for a serial line, that behaves like the devices
-/// of that bus.
+/// The far end of one [[bus]]: a port of this machine, or a pseudo terminal for a serial line, that behaves like the
+/// devices of that bus.
 
 #include <memory>
 #include <string>
@@ -10,6 +10,7 @@
 #include "core/rig/rig.h"
 #include "sim/faults/faults.h"
 #include "sim/lamp_faults.h"
+#include "sim/wire/sockets.h"
 #include "sim/world/world.h"
 
 namespace luxrig::sim {
@@ -34,10 +35,14 @@ struct EndpointParts {
   Faults& faults;
 };
 
-/// Wanted place of an endpoint: a port (0 = any free one) or a path (empty = a new one).
+/// Wanted place of an endpoint: a port (0 = any free one) of an address, or a path (empty = a new one).
 struct EndpointPlace {
   int port = 0;
   std::string path{};
+  std::uint32_t address = kLoopback;
+  /// As a device in a network of others, for sACN and Art-Net: hears multicast and broadcast as well, shares the port
+  /// with programs on this machine, and answers to the standard port of a sender too.
+  bool among_others = false;
 };
 
 /// Cause::invalid for a driver that the simulator does not support.
@@ -47,13 +52,18 @@ struct EndpointPlace {
   return open_endpoint(parts, EndpointPlace{port});
 }
 
-[[nodiscard]] Result<std::unique_ptr<BusEndpoint>> open_sacn_endpoint(const EndpointParts& parts, int port);
-[[nodiscard]] Result<std::unique_ptr<BusEndpoint>> open_artnet_endpoint(const EndpointParts& parts, int port);
+[[nodiscard]] Result<std::unique_ptr<BusEndpoint>> open_sacn_endpoint(const EndpointParts& parts,
+                                                                      const EndpointPlace& place);
+[[nodiscard]] Result<std::unique_ptr<BusEndpoint>> open_artnet_endpoint(const EndpointParts& parts,
+                                                                        const EndpointPlace& place);
 /// A widget behind a USB/IP server.
-[[nodiscard]] Result<std::unique_ptr<BusEndpoint>> open_usb_endpoint(const EndpointParts& parts, int port);
-[[nodiscard]] Result<std::unique_ptr<BusEndpoint>> open_modbus_endpoint(const EndpointParts& parts, int port);
+[[nodiscard]] Result<std::unique_ptr<BusEndpoint>> open_usb_endpoint(const EndpointParts& parts,
+                                                                     const EndpointPlace& place);
+[[nodiscard]] Result<std::unique_ptr<BusEndpoint>> open_modbus_endpoint(const EndpointParts& parts,
+                                                                        const EndpointPlace& place);
 [[nodiscard]] Result<std::unique_ptr<BusEndpoint>> open_modbus_rtu_endpoint(const EndpointParts& parts,
-                                                                            const std::string& path);
-[[nodiscard]] Result<std::unique_ptr<BusEndpoint>> open_can_endpoint(const EndpointParts& parts, int port);
+                                                                            const EndpointPlace& place);
+[[nodiscard]] Result<std::unique_ptr<BusEndpoint>> open_can_endpoint(const EndpointParts& parts,
+                                                                     const EndpointPlace& place);
 
 }  // namespace luxrig::sim

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <set>
 
 #include "sim/wire/dmx_fixtures.h"
 
@@ -17,23 +18,50 @@ constexpr std::size_t kMaxArrived = 4096;                            // waiting 
 
 }  // namespace
 
-DmxEndpoint::DmxEndpoint(const EndpointParts& parts, BoundSocket socket)
-    : parts_(parts), socket_(std::move(socket)), port_(socket_.port) {}
+std::vector<int> universes_of(const Rig& rig, std::size_t bus) {
+  std::set<int> universes;
+  for (const Fixture& fixture : rig.fixtures) {
+    const auto* patch = std::get_if<DmxPatch>(&fixture.patch);
+    if (fixture.bus == bus && patch != nullptr) universes.insert(patch->universe);
+  }
+  return {universes.begin(), universes.end()};
+}
+
+Result<DmxEndpoint::Ear> DmxEndpoint::listen(const EndpointPlace& place, std::span<const std::uint32_t> groups) {
+  Ear ear;
+  auto own = place.among_others ? share_udp(place.port, place.address) : bind_udp(place.port, place.address);
+  if (!own) return tl::unexpected(own.error());
+  ear.own = std::move(*own);
+  if (!place.among_others) return ear;
+  for (const std::uint32_t group : groups) {
+    auto joined = join_multicast(ear.own.port, group, place.address);
+    if (!joined) return tl::unexpected(joined.error());
+    ear.shared.push_back(std::move(*joined));
+  }
+  auto broadcasts = hear_broadcasts(ear.own.port, place.address);
+  if (!broadcasts) return tl::unexpected(broadcasts.error());
+  for (Descriptor& descriptor : *broadcasts) ear.shared.push_back(std::move(descriptor));
+  return ear;
+}
+
+DmxEndpoint::DmxEndpoint(const EndpointParts& parts, EndpointPlace place, std::vector<std::uint32_t> groups, Ear ear)
+    : parts_(parts), place_(std::move(place)), groups_(std::move(groups)), ear_(std::move(ear)) {}
 
 void DmxEndpoint::serve(Time now) {
   const std::string& bus = parts_.rig.buses[parts_.bus].name;
   lamp_faults_.obey(parts_.rig, parts_.bus, parts_.faults, parts_.world);
   if (parts_.faults.find(bus, FaultKind::dead)) {
-    socket_.descriptor.reset();
+    ear_ = {};
     arrived_.clear();
     overtaken_.clear();
     owed_.clear();
     return;
   }
-  if (!socket_.descriptor.open()) {
-    if (auto again = bind_udp(port_)) socket_ = std::move(*again);
+  if (!ear_.own.descriptor.open()) {
+    if (auto again = listen(place_, groups_)) ear_ = std::move(*again);
   }
-  take(now);
+  take(now, ear_.own.descriptor.get());
+  for (const Descriptor& shared : ear_.shared) take(now, shared.get());
   bool any = false;
   while (!arrived_.empty() && arrived_.front().due <= now) {
     const Arrived packet = std::move(arrived_.front());
@@ -58,6 +86,10 @@ void DmxEndpoint::serve(Time now) {
 void DmxEndpoint::obey(Time now, const Arrived& packet) {
   for (Answer& answer : receive(now, packet.address, packet.bytes)) {
     if (owed_.size() >= kMaxArrived) break;
+    // A program that sends from another port may listen on the standard one only. Not to ourselves, where a program
+    // of this machine has our address.
+    if (place_.among_others && packet.port != place_.port && packet.address != place_.address)
+      owed_.push_back({now + answer.late, packet.address, static_cast<std::uint16_t>(place_.port), answer.packet});
     owed_.push_back({now + answer.late, packet.address, packet.port, std::move(answer.packet)});
   }
 }
@@ -69,19 +101,19 @@ void DmxEndpoint::send_owed(Time now) {
     to.sin_family = AF_INET;
     to.sin_addr.s_addr = htonl(answer.address);
     to.sin_port = htons(answer.port);
-    ::sendto(socket_.descriptor.get(), answer.bytes.data(), answer.bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT,
+    ::sendto(ear_.own.descriptor.get(), answer.bytes.data(), answer.bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT,
              reinterpret_cast<const sockaddr*>(&to), sizeof to);
   }
   std::erase_if(owed_, [now](const Owed& answer) { return answer.due <= now; });
 }
 
-void DmxEndpoint::take(Time now) {
+void DmxEndpoint::take(Time now, int descriptor) {
   std::array<std::uint8_t, 2048> buffer;
-  for (int i = 0; i < kMaxPacketsAtOnce && socket_.descriptor.open(); ++i) {
+  for (int i = 0; i < kMaxPacketsAtOnce && descriptor >= 0; ++i) {
     sockaddr_in from{};
     socklen_t from_length = sizeof from;
-    const auto received = ::recvfrom(socket_.descriptor.get(), buffer.data(), buffer.size(), 0,
-                                     reinterpret_cast<sockaddr*>(&from), &from_length);
+    const auto received =
+        ::recvfrom(descriptor, buffer.data(), buffer.size(), 0, reinterpret_cast<sockaddr*>(&from), &from_length);
     if (received < 0) {
       if (errno == EINTR || errno == ECONNREFUSED) continue;  // one of our answers met a closed port: ignore it
       break;
@@ -106,7 +138,8 @@ void DmxEndpoint::take(Time now) {
 }
 
 void DmxEndpoint::descriptors(std::vector<int>& into) const {
-  if (socket_.descriptor.open()) into.push_back(socket_.descriptor.get());
+  if (ear_.own.descriptor.open()) into.push_back(ear_.own.descriptor.get());
+  for (const Descriptor& shared : ear_.shared) into.push_back(shared.get());
 }
 
 }  // namespace luxrig::sim

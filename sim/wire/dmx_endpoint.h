@@ -1,5 +1,5 @@
 #pragma once
-/// Common part of sACN and Art-Net: a UDP port, frames that may be lost, late or garbled, and fixtures that read their
+/// Common part of sACN and Art-Net: a UDP port, multicast and broadcast if it is among others, frames that may be lost, late or garbled, and fixtures that read their
 /// slots.
 
 #include <array>
@@ -12,11 +12,27 @@
 
 namespace luxrig::sim {
 
+/// Universes (Art-Net: port addresses) of the fixtures on a bus, each once.
+[[nodiscard]] std::vector<int> universes_of(const Rig& rig, std::size_t bus);
+/// IPv4 multicast group of a sACN universe (E1.31, 9.3.1).
+[[nodiscard]] constexpr std::uint32_t sacn_group(int universe) {
+  return 0xefff0000u | (static_cast<std::uint32_t>(universe) & 0xffff);
+}
+
 class DmxEndpoint : public BusEndpoint {
  public:
-  DmxEndpoint(const EndpointParts& parts, BoundSocket socket);
+  struct Ear {
+    BoundSocket own;                 ///< receives what is sent to its address; answers
+    std::vector<Descriptor> shared;  ///< receive multicast and broadcast
+  };
+  /// `groups`: of multicast, if the place is among others.
+  [[nodiscard]] static Result<Ear> listen(const EndpointPlace& place, std::span<const std::uint32_t> groups);
 
-  [[nodiscard]] int port() const override { return port_; }
+  /// `place`: with the port that `ear` has.
+  DmxEndpoint(const EndpointParts& parts, EndpointPlace place, std::vector<std::uint32_t> groups, Ear ear);
+  void keep(Descriptor claim) { claim_ = std::move(claim); }
+
+  [[nodiscard]] int port() const override { return place_.port; }
   void serve(Time now) override;
   void descriptors(std::vector<int>& into) const override;
 
@@ -33,6 +49,7 @@ class DmxEndpoint : public BusEndpoint {
   [[nodiscard]] virtual int moved_by(std::size_t) const { return 0; }
 
   EndpointParts parts_;
+  EndpointPlace place_;
 
  private:
   struct Arrived {
@@ -49,17 +66,35 @@ class DmxEndpoint : public BusEndpoint {
     Packet bytes;
   };
 
-  void take(Time now);
+  void take(Time now, int descriptor);
   void obey(Time now, const Arrived& packet);
   void send_owed(Time now);
 
-  BoundSocket socket_;
-  int port_;
+  std::vector<std::uint32_t> groups_;
+  Ear ear_;
+  Descriptor claim_;  ///< on the port, while the endpoint exists
   std::deque<Arrived> arrived_;
   std::vector<Arrived> overtaken_;
   std::vector<Owed> owed_;  ///< in order of creation
   LampFaults lamp_faults_;
   std::uint64_t packets_ = 0, frames_ = 0;
 };
+
+template <class Endpoint>
+[[nodiscard]] Result<std::unique_ptr<BusEndpoint>> open_dmx_endpoint(const EndpointParts& parts, EndpointPlace place,
+                                                                     std::vector<std::uint32_t> groups) {
+  auto ear = DmxEndpoint::listen(place, groups);
+  if (!ear) return tl::unexpected(ear.error());
+  place.port = ear->own.port;
+  Descriptor claim;
+  if (place.among_others) {
+    auto claimed = claim_udp(place.port, place.address);
+    if (!claimed) return tl::unexpected(claimed.error());
+    claim = std::move(*claimed);
+  }
+  auto endpoint = std::make_unique<Endpoint>(parts, place, std::move(groups), std::move(*ear));
+  endpoint->keep(std::move(claim));
+  return endpoint;
+}
 
 }  // namespace luxrig::sim

@@ -3,14 +3,11 @@
 namespace luxrig::sim {
 
 Result<std::unique_ptr<RigServer>> RigServer::open(const Rig& rig, World& world, Faults& faults,
-                                                   const std::map<std::string, int>& ports,
-                                                   const std::map<std::string, std::string>& paths) {
+                                                   const std::map<std::string, EndpointPlace>& places) {
   auto server = std::make_unique<RigServer>();
   for (std::size_t b = 0; b < rig.buses.size(); ++b) {
-    EndpointPlace place;
-    if (const auto port = ports.find(rig.buses[b].name); port != ports.end()) place.port = port->second;
-    if (const auto path = paths.find(rig.buses[b].name); path != paths.end()) place.path = path->second;
-    auto endpoint = open_endpoint({rig, b, world, faults}, place);
+    const auto place = places.find(rig.buses[b].name);
+    auto endpoint = open_endpoint({rig, b, world, faults}, place != places.end() ? place->second : EndpointPlace{});
     if (!endpoint) {
       Fault fault = endpoint.error();
       fault.device = rig.buses[b].name;

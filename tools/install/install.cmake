@@ -5,6 +5,7 @@ include(GNUInstallDirs)
 # The build folder is laid out like an installation.
 file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/share/luxrig)
 file(CREATE_LINK ${PROJECT_SOURCE_DIR}/rigs ${CMAKE_BINARY_DIR}/share/luxrig/rigs SYMBOLIC)
+file(CREATE_LINK ${PROJECT_SOURCE_DIR}/tools/luxrig-sim/page ${CMAKE_BINARY_DIR}/share/luxrig/sim-page SYMBOLIC)
 
 # The programs write man pages and completion themselves, from their declared options. Only they know which pages there
 # are, one for each command. The folder is cleared first, so pages of removed commands go.
@@ -34,6 +35,7 @@ endif()
 
 install(TARGETS luxrig luxrig-bench luxrig-test luxrigd luxrig-sim luxrig-guardian RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/rigs/ DESTINATION ${CMAKE_INSTALL_DATADIR}/luxrig/rigs)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/tools/luxrig-sim/page/ DESTINATION ${CMAKE_INSTALL_DATADIR}/luxrig/sim-page)
 if(TARGET web)
   install(DIRECTORY ${LUXRIG_WEB_DIR}/ DESTINATION ${CMAKE_INSTALL_DATADIR}/luxrig/web)
 endif()

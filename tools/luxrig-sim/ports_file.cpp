@@ -11,16 +11,16 @@
 namespace luxrig::sim {
 namespace {
 
-constexpr const char* kPortsHost = "127.0.0.1";
+constexpr const char* kControlHost = "127.0.0.1";
 
 }  // namespace
 
 std::string to_json(const Ports& ports) {
   nlohmann::ordered_json json;
   json["buses"] = nlohmann::ordered_json::object();
-  for (const auto& [bus, port] : ports.buses) json["buses"][bus] = {{"host", kPortsHost}, {"port", port}};
+  for (const auto& [bus, port] : ports.buses) json["buses"][bus] = {{"host", ports.host}, {"port", port}};
   for (const auto& [bus, path] : ports.paths) json["buses"][bus] = {{"path", path}};
-  json["control"] = {{"host", kPortsHost}, {"port", ports.control}};
+  json["control"] = {{"host", kControlHost}, {"port", ports.control}};
   json["seed"] = ports.seed;
   return json.dump();
 }

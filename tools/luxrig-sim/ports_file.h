@@ -16,6 +16,7 @@
 namespace luxrig::sim {
 
 struct Ports {
+  std::string host = "127.0.0.1";            ///< of the buses with a port; the control port is always on 127.0.0.1
   std::map<std::string, int> buses;          ///< by bus name
   std::map<std::string, std::string> paths;  ///< of serial lines, by bus name
   int control = 0;
@@ -23,7 +24,7 @@ struct Ports {
 };
 
 [[nodiscard]] std::string to_json(const Ports& ports);  ///< one line
-/// Nothing if the file does not exist; problems if it is no ports file.
+/// Nothing if the file does not exist; problems if it is no ports file. Ignores the host.
 [[nodiscard]] Checked<std::optional<Ports>> read_ports(const std::filesystem::path& file);
 /// Readers see the old file or the new one, never half of it.
 [[nodiscard]] Result<void> write_ports(const std::filesystem::path& file, const Ports& ports);

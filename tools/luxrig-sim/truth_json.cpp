@@ -5,7 +5,7 @@
 
 namespace luxrig::sim {
 
-std::string truth_json(const Rig& rig, const World& world) {
+std::string truth_json(const Rig& rig, const World& world, Faults& faults, const InTheLight& in_the_light) {
   using Json = nlohmann::ordered_json;
   Json json;
   json["time_s"] = to_seconds(world.now() - Time{});
@@ -14,16 +14,20 @@ std::string truth_json(const Rig& rig, const World& world) {
   for (std::size_t p = 0; p < points.size(); ++p) {
     Json point = {{"name", rig.points[p].name}, {"lux", points[p].lux}, {"max_lux_seen", points[p].max_lux_seen}};
     if (rig.points[p].max_lx) point["max_lux"] = *rig.points[p].max_lx;
+    if (in_the_light.shade[p] != 1) point["shade"] = in_the_light.shade[p];
     json["points"].push_back(std::move(point));
   }
   json["luxmeters"] = Json::array();
   const std::vector<PointTruth> meters = world.luxmeters();
   for (std::size_t m = 0; m < meters.size(); ++m) {
+    const double reading_lx = world.meter_reading_lx(m);
     json["luxmeters"].push_back({{"name", rig.luxmeters[m].name},
                                  {"lux", meters[m].lux},
                                  {"max_lux_seen", meters[m].max_lux_seen},
-                                 {"reading", world.meter_reading_lx(m)},
+                                 {"reading", reading_lx},
+                                 {"shown", faults.shown_lx(rig.luxmeters[m].name, reading_lx)},
                                  {"gain", world.meter_gains()[m]}});
+    if (in_the_light.cover[m] != 1) json["luxmeters"].back()["cover"] = in_the_light.cover[m];
   }
   json["fixtures"] = Json::array();
   const std::vector<double> drives = world.drives(), levels = world.levels();
@@ -48,7 +52,14 @@ std::string truth_json(const Rig& rig, const World& world) {
                                   {"lux", violation.lux},
                                   {"time_s", to_seconds(violation.began - Time{})}});
   }
-  return json.dump();
+  if (rig.daylight) json["daylight"] = in_the_light.daylight;
+  json["faults"] = Json::array();
+  for (const FaultOn& fault : faults.all_on()) {
+    Json on = {{"device", fault.device}, {"fault", name_of(fault.kind)}};
+    if (range_of(fault.kind).valued) on["value"] = fault.value;
+    json["faults"].push_back(std::move(on));
+  }
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 }  // namespace luxrig::sim

@@ -8,20 +8,11 @@ namespace {
 
 constexpr Duration kWarmEvery = std::chrono::milliseconds(100);
 
-std::vector<int> port_addresses_of(const EndpointParts& parts) {
-  std::vector<int> port_addresses;
-  for (const Fixture& fixture : parts.rig.fixtures) {
-    const auto* patch = std::get_if<DmxPatch>(&fixture.patch);
-    if (fixture.bus == parts.bus && patch != nullptr) port_addresses.push_back(patch->universe);
-  }
-  return port_addresses;
-}
-
 class ArtnetEndpoint final : public DmxEndpoint {
  public:
-  ArtnetEndpoint(const EndpointParts& parts, BoundSocket socket)
-      : DmxEndpoint(parts, std::move(socket)),
-        node_(port_addresses_of(parts)),
+  ArtnetEndpoint(const EndpointParts& parts, const EndpointPlace& place, std::vector<std::uint32_t> groups, Ear ear)
+      : DmxEndpoint(parts, place, std::move(groups), std::move(ear)),
+        node_(universes_of(parts.rig, parts.bus)),
         fixtures_(parts.rig, parts.bus, parts.world, parts.faults),
         gate_(fixtures_.lines()) {}
 
@@ -36,7 +27,8 @@ class ArtnetEndpoint final : public DmxEndpoint {
  private:
   std::vector<Answer> receive(Time now, std::uint32_t from, std::span<const std::uint8_t> packet) override {
     std::vector<Answer> answers;
-    for (Packet& reply : node_.receive(now, from, packet)) answers.push_back({std::move(reply), {}});
+    for (Packet& reply : node_.receive(now, from, packet, is_art_poll(packet) ? address_for(from) : kLoopback))
+      answers.push_back({std::move(reply), {}});
     for (ArtnetRdmGate::Answer& answer : gate_.receive(now, packet)) {
       answers.push_back({std::move(answer.packet), answer.late});
     }
@@ -47,6 +39,10 @@ class ArtnetEndpoint final : public DmxEndpoint {
     return node_.levels(universe, now);
   }
 
+  [[nodiscard]] std::uint32_t address_for(std::uint32_t peer) const {
+    return place_.address == kAnyAddress ? own_address_towards(peer) : place_.address;
+  }
+
   ArtnetNode node_;
   RdmFixtures fixtures_;
   ArtnetRdmGate gate_;
@@ -55,10 +51,8 @@ class ArtnetEndpoint final : public DmxEndpoint {
 
 }  // namespace
 
-Result<std::unique_ptr<BusEndpoint>> open_artnet_endpoint(const EndpointParts& parts, int port) {
-  auto socket = bind_udp(port);
-  if (!socket) return tl::unexpected(socket.error());
-  return std::make_unique<ArtnetEndpoint>(parts, std::move(*socket));
+Result<std::unique_ptr<BusEndpoint>> open_artnet_endpoint(const EndpointParts& parts, const EndpointPlace& place) {
+  return open_dmx_endpoint<ArtnetEndpoint>(parts, place, {});
 }
 
 }  // namespace luxrig::sim

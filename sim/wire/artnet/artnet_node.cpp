@@ -53,9 +53,10 @@ ArtnetNode::ArtnetNode(std::vector<int> port_addresses) {
   for (const int port_address : port_addresses) ports_[port_address];
 }
 
-std::vector<std::vector<std::uint8_t>> ArtnetNode::receive(Time now, std::uint32_t from, Bytes packet) {
+std::vector<std::vector<std::uint8_t>> ArtnetNode::receive(Time now, std::uint32_t from, Bytes packet,
+                                                           std::uint32_t own) {
   forget_lost(now);
-  if (is_art_poll(packet)) return poll_replies();
+  if (is_art_poll(packet)) return poll_replies(own);
   if (is_art_sync(packet)) {
     for (auto& [port_address, port] : ports_) {
       // Only the controller whose data a port shows may synchronise it; a merging port is never synchronised.
@@ -120,7 +121,7 @@ std::optional<ArtnetNode::Levels> ArtnetNode::levels(int port_address, Time now)
   return found == ports_.end() ? std::nullopt : found->second.look;
 }
 
-std::vector<std::vector<std::uint8_t>> ArtnetNode::poll_replies() const {
+std::vector<std::vector<std::uint8_t>> ArtnetNode::poll_replies(std::uint32_t own) const {
   std::vector<std::vector<std::uint8_t>> replies;
   for (auto port = ports_.begin(); port != ports_.end();) {
     // One page: up to four ports that share net and sub-net.
@@ -133,8 +134,10 @@ std::vector<std::vector<std::uint8_t>> ArtnetNode::poll_replies() const {
     put_text(reply, 0, 8, "Art-Net");
     reply[8] = kOpPollReply & 0xff;
     reply[9] = kOpPollReply >> 8;
-    const std::uint8_t loopback[] = {127, 0, 0, 1};
-    std::copy(std::begin(loopback), std::end(loopback), reply.begin() + 10);
+    const auto put_own = [&](std::size_t offset) {
+      for (int i = 0; i < 4; ++i) reply[offset + static_cast<std::size_t>(i)] = own >> (24 - 8 * i) & 0xff;
+    };
+    put_own(10);       // IpAddress
     reply[14] = 0x36;  // port 0x1936, low byte first
     reply[15] = 0x19;
     reply[17] = 1;                                                                 // firmware
@@ -151,7 +154,7 @@ std::vector<std::vector<std::uint8_t>> ArtnetNode::poll_replies() const {
       reply[182 + i] = static_cast<std::uint8_t>((state.look ? 0x80 : 0) | (state.sources.size() > 1 ? 0x08 : 0));
       reply[190 + i] = static_cast<std::uint8_t>(on_page[i]->first & 0x0f);  // SwOut
     }
-    std::copy(std::begin(loopback), std::end(loopback), reply.begin() + 207);  // BindIp
+    put_own(207);  // BindIp
     reply[211] = bind_index;
     reply[212] = 0x08;  // Status2: 15-bit port addresses
     reply[217] = 0x00;  // Status3: failsafe holds the last look

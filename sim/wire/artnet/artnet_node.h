@@ -36,8 +36,9 @@ class ArtnetNode {
   /// `port_addresses`: universes it outputs (0…32767).
   explicit ArtnetNode(std::vector<int> port_addresses);
 
-  /// `from`: the sender's IPv4 address. Returns the packets to send back to it.
-  std::vector<std::vector<std::uint8_t>> receive(Time now, std::uint32_t from, std::span<const std::uint8_t> packet);
+  /// `from`: the sender's IPv4 address. `own`: the node's, which its replies name. Returns the packets to send back.
+  std::vector<std::vector<std::uint8_t>> receive(Time now, std::uint32_t from, std::span<const std::uint8_t> packet,
+                                                 std::uint32_t own = 0x7f000001);
 
   /// Levels of a universe, address 1 first; empty before its first data or if it lacks that universe.
   [[nodiscard]] std::optional<std::array<std::uint8_t, kDmxSlots>> levels(int port_address, Time now);
@@ -61,7 +62,7 @@ class ArtnetNode {
   void forget_lost(Time now);
   static Levels merged(const Port& port);
   void take(Time now, std::uint32_t from, const ArtDmx& dmx);
-  [[nodiscard]] std::vector<std::vector<std::uint8_t>> poll_replies() const;
+  [[nodiscard]] std::vector<std::vector<std::uint8_t>> poll_replies(std::uint32_t own) const;
 
   std::map<int, Port> ports_;
   std::uint64_t accepted_ = 0;

@@ -15,11 +15,11 @@ constexpr int kMaxCanFramesAtOnce = 1000;  // per serve(), so that a flood canno
 constexpr std::size_t kMaxMasters = 4;
 constexpr Duration kForgetMaster = std::chrono::seconds(5);
 
-/// A CAN bus as datagrams on loopback: recent senders of frames receive the nodes' frames.
+/// A CAN bus as datagrams: recent senders of frames receive the nodes' frames.
 class CanEndpoint final : public BusEndpoint {
  public:
-  CanEndpoint(const EndpointParts& parts, BoundSocket socket)
-      : parts_(parts), bus_(parts), socket_(std::move(socket)), port_(socket_.port) {}
+  CanEndpoint(const EndpointParts& parts, BoundSocket socket, std::uint32_t address)
+      : parts_(parts), bus_(parts), socket_(std::move(socket)), port_(socket_.port), address_(address) {}
 
   [[nodiscard]] int port() const override { return port_; }
 
@@ -27,7 +27,7 @@ class CanEndpoint final : public BusEndpoint {
     if (parts_.faults.find(parts_.rig.buses[parts_.bus].name, FaultKind::dead)) {
       socket_.descriptor.reset();
     } else if (!socket_.descriptor.open()) {
-      if (auto again = bind_udp(port_)) socket_ = std::move(*again);
+      if (auto again = bind_udp(port_, address_)) socket_ = std::move(*again);
     }
     bus_.advance(now);  // the axes run even without a listener
     take(now);
@@ -81,15 +81,16 @@ class CanEndpoint final : public BusEndpoint {
   AxisBus bus_;
   BoundSocket socket_;
   int port_;
+  std::uint32_t address_;
   std::vector<Master> masters_;
 };
 
 }  // namespace
 
-Result<std::unique_ptr<BusEndpoint>> open_can_endpoint(const EndpointParts& parts, int port) {
-  auto socket = bind_udp(port);
+Result<std::unique_ptr<BusEndpoint>> open_can_endpoint(const EndpointParts& parts, const EndpointPlace& place) {
+  auto socket = bind_udp(place.port, place.address);
   if (!socket) return tl::unexpected(socket.error());
-  return std::make_unique<CanEndpoint>(parts, std::move(*socket));
+  return std::make_unique<CanEndpoint>(parts, std::move(*socket), place.address);
 }
 
 }  // namespace luxrig::sim

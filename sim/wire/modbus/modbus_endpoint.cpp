@@ -8,8 +8,8 @@ class ModbusEndpoint final : public BusEndpoint {
  public:
   explicit ModbusEndpoint(const EndpointParts& parts) : parts_(parts), units_(parts) {}
 
-  Result<void> open(int port) {
-    auto server = ModbusServer::open(port, units_);
+  Result<void> open(const EndpointPlace& place) {
+    auto server = ModbusServer::open(place.port, place.address, units_);
     if (!server) return tl::unexpected(server.error());
     server_ = std::move(*server);
     return {};
@@ -31,9 +31,9 @@ class ModbusEndpoint final : public BusEndpoint {
 
 }  // namespace
 
-Result<std::unique_ptr<BusEndpoint>> open_modbus_endpoint(const EndpointParts& parts, int port) {
+Result<std::unique_ptr<BusEndpoint>> open_modbus_endpoint(const EndpointParts& parts, const EndpointPlace& place) {
   auto endpoint = std::make_unique<ModbusEndpoint>(parts);
-  if (auto opened = endpoint->open(port); !opened) return tl::unexpected(opened.error());
+  if (auto opened = endpoint->open(place); !opened) return tl::unexpected(opened.error());
   return endpoint;
 }
 

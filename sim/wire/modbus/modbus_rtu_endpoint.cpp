@@ -49,8 +49,8 @@ class ModbusRtuEndpoint final : public BusEndpoint {
 
 }  // namespace
 
-Result<std::unique_ptr<BusEndpoint>> open_modbus_rtu_endpoint(const EndpointParts& parts, const std::string& path) {
-  auto line = PtyLine::open(path);
+Result<std::unique_ptr<BusEndpoint>> open_modbus_rtu_endpoint(const EndpointParts& parts, const EndpointPlace& place) {
+  auto line = PtyLine::open(place.path);
   if (!line) return tl::unexpected(line.error());
   return std::make_unique<ModbusRtuEndpoint>(parts, std::move(*line));
 }

@@ -17,11 +17,12 @@ constexpr std::size_t kMaxUnsentBytes = 65536;
 
 }  // namespace
 
-Result<std::unique_ptr<ModbusServer>> ModbusServer::open(int port, ModbusUnits& units) {
-  auto listener = listen_tcp(port);
+Result<std::unique_ptr<ModbusServer>> ModbusServer::open(int port, std::uint32_t address, ModbusUnits& units) {
+  auto listener = listen_tcp(port, address);
   if (!listener) return tl::unexpected(listener.error());
   std::unique_ptr<ModbusServer> server(new ModbusServer(units));
   server->port_ = listener->port;
+  server->address_ = address;
   server->listener_ = std::move(*listener);
   return server;
 }
@@ -30,7 +31,7 @@ void ModbusServer::set_open(bool open) {
   if (open == listener_.descriptor.open()) return;
   if (open) {
     // The port was taken in the meantime: it stays closed until the next call tries again.
-    if (auto listener = listen_tcp(port_)) listener_ = std::move(*listener);
+    if (auto listener = listen_tcp(port_, address_)) listener_ = std::move(*listener);
     return;
   }
   listener_.descriptor.reset();

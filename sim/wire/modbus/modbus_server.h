@@ -1,5 +1,5 @@
 #pragma once
-/// Modbus TCP on a loopback port: connections, and answers sent when they are due. Never blocks.
+/// Modbus TCP on a port of this machine: connections, and answers sent when they are due. Never blocks.
 
 #include <deque>
 #include <list>
@@ -14,7 +14,7 @@ namespace luxrig::sim {
 class ModbusServer {
  public:
   /// `port` 0 = any free one. `units` must outlive the server.
-  static Result<std::unique_ptr<ModbusServer>> open(int port, ModbusUnits& units);
+  static Result<std::unique_ptr<ModbusServer>> open(int port, std::uint32_t address, ModbusUnits& units);
 
   [[nodiscard]] int port() const { return port_; }
   /// Closed: drops connections and refuses new ones. Reopens on the same port.
@@ -42,6 +42,7 @@ class ModbusServer {
   ModbusUnits& units_;
   BoundSocket listener_;
   int port_ = 0;
+  std::uint32_t address_ = kLoopback;
   std::list<Connection> connections_;
 };
 

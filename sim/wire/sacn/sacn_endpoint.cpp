@@ -22,10 +22,10 @@ class SacnEndpoint final : public DmxEndpoint {
 
 }  // namespace
 
-Result<std::unique_ptr<BusEndpoint>> open_sacn_endpoint(const EndpointParts& parts, int port) {
-  auto socket = bind_udp(port);
-  if (!socket) return tl::unexpected(socket.error());
-  return std::make_unique<SacnEndpoint>(parts, std::move(*socket));
+Result<std::unique_ptr<BusEndpoint>> open_sacn_endpoint(const EndpointParts& parts, const EndpointPlace& place) {
+  std::vector<std::uint32_t> groups;
+  for (const int universe : universes_of(parts.rig, parts.bus)) groups.push_back(sacn_group(universe));
+  return open_dmx_endpoint<SacnEndpoint>(parts, place, std::move(groups));
 }
 
 }  // namespace luxrig::sim

@@ -18,12 +18,14 @@ namespace {
 /// A widget behind a USB/IP server. The fault `dead` unplugs it; plugged in again, it has forgotten everything.
 class UsbEndpoint final : public BusEndpoint {
  public:
-  UsbEndpoint(const EndpointParts& parts, std::unique_ptr<UsbDevice> device, BoundSocket listener)
+  UsbEndpoint(const EndpointParts& parts, std::unique_ptr<UsbDevice> device, BoundSocket listener,
+              std::uint32_t address)
       : parts_(parts),
         device_(std::move(device)),
         fixtures_(parts.rig, parts.bus, parts.world, parts.faults),
         listener_(std::move(listener)),
-        port_(listener_.port) {
+        port_(listener_.port),
+        address_(address) {
     // A widget has one line, whatever its universe number.
     device_->connect([this](Time now, std::span<const std::uint8_t> packet) {
       auto& lines = fixtures_.lines();
@@ -42,7 +44,7 @@ class UsbEndpoint final : public BusEndpoint {
       return;
     }
     if (!listener_.descriptor.open()) {
-      if (auto again = listen_tcp(port_)) listener_ = std::move(*again);
+      if (auto again = listen_tcp(port_, address_)) listener_ = std::move(*again);
     }
     if (!plugged_in_) {
       plugged_in_ = true;
@@ -117,6 +119,7 @@ class UsbEndpoint final : public BusEndpoint {
   RdmFixtures fixtures_;
   BoundSocket listener_;
   int port_;
+  std::uint32_t address_;
   Descriptor client_;
   std::optional<UsbipSession> session_;
   std::vector<std::uint8_t> unsent_;
@@ -126,12 +129,12 @@ class UsbEndpoint final : public BusEndpoint {
 
 }  // namespace
 
-Result<std::unique_ptr<BusEndpoint>> open_usb_endpoint(const EndpointParts& parts, int port) {
+Result<std::unique_ptr<BusEndpoint>> open_usb_endpoint(const EndpointParts& parts, const EndpointPlace& place) {
   auto device = make_usb_widget(parts.rig.buses[parts.bus].driver);
   if (!device) return tl::unexpected(Fault{Cause::invalid, "", "no simulated widget for this driver", {}});
-  auto listener = listen_tcp(port);
+  auto listener = listen_tcp(place.port, place.address);
   if (!listener) return tl::unexpected(listener.error());
-  return std::make_unique<UsbEndpoint>(parts, std::move(device), std::move(*listener));
+  return std::make_unique<UsbEndpoint>(parts, std::move(device), std::move(*listener), place.address);
 }
 
 }  // namespace luxrig::sim

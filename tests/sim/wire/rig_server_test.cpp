@@ -290,7 +290,7 @@ TEST(RigServer, DisconnectsOnInvalidModbusAndWhenItsBusDies) {
 TEST(RigServer, NamesATakenPortAndAnUnknownDriver) {
   Served served("sacn");
   const int port = served.server->ports().at("field");
-  const auto again = RigServer::open(served.rig, *served.world, served.faults, {{"field", port}});
+  const auto again = RigServer::open(served.rig, *served.world, served.faults, {{"field", {port}}});
   ASSERT_FALSE(again);
   EXPECT_EQ(again.error().device, "field");
   EXPECT_NE(again.error().detail.find(std::to_string(port)), std::string::npos) << again.error().detail;
