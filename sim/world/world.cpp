@@ -30,7 +30,8 @@ class MatrixWorld final : public World {
         lux_(fixed_lx_),
         peak_lx_(lux_),
         lamp_share_(Eigen::VectorXd::Ones(lux_.size())),
-        cover_(Eigen::VectorXd::Ones(static_cast<Eigen::Index>(rig.luxmeters.size()))) {
+        cover_(Eigen::VectorXd::Ones(static_cast<Eigen::Index>(rig.luxmeters.size()))),
+        shown_(rig.luxmeters.size()) {
     for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
       dimmers_.emplace_back(rig.fixtures[f].dimmer_curve, truths_[f].curve_exponent, deviations.lamp_lag_s);
       heads_.emplace_back(rig.fixtures[f]);
@@ -93,6 +94,10 @@ class MatrixWorld final : public World {
     LUXRIG_CHECK(luxmeter < meters_.size(), "luxmeter {} of {}", luxmeter, meters_.size());
     cover_[static_cast<Eigen::Index>(luxmeter)] = share;
   }
+  void set_shown(std::size_t luxmeter, std::optional<double> lux) override {
+    LUXRIG_CHECK(luxmeter < meters_.size(), "luxmeter {} of {}", luxmeter, meters_.size());
+    shown_[luxmeter] = lux;
+  }
 
   void set_daylight(double factor) override {
     daylight_ = factor;
@@ -106,7 +111,7 @@ class MatrixWorld final : public World {
   [[nodiscard]] Time now() const override { return time_of(tick_); }
   [[nodiscard]] double meter_reading_lx(std::size_t luxmeter) const override {
     LUXRIG_CHECK(luxmeter < meters_.size(), "luxmeter {} of {}", luxmeter, meters_.size());
-    return meters_[luxmeter].reading_lx();
+    return shown_[luxmeter].value_or(meters_[luxmeter].reading_lx());
   }
   [[nodiscard]] Time meter_sampled_at(std::size_t luxmeter) const override {
     LUXRIG_CHECK(luxmeter < meters_.size(), "luxmeter {} of {}", luxmeter, meters_.size());
@@ -215,6 +220,7 @@ class MatrixWorld final : public World {
   std::vector<std::optional<double>> limits_lx_;
   Eigen::VectorXd fixed_lx_, level_, lux_, peak_lx_;
   Eigen::VectorXd lamp_share_, cover_;  ///< per row; per luxmeter
+  std::vector<std::optional<double>> shown_;  ///< per luxmeter: in place of its light
   double daylight_ = 1;
   bool changed_ = false;  ///< light, by something else than lamps and heads
   std::vector<std::optional<std::size_t>> meter_points_;

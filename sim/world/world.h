@@ -97,6 +97,8 @@ class World {
   virtual void set_shade(std::size_t point, double share) = 0;
   /// The luxmeter sees this share of all light at it (1: it is not covered).
   virtual void set_cover(std::size_t luxmeter, double share) = 0;
+  /// The luxmeter shows this in place of its light, such as a recorded reading; nullopt: its light again.
+  virtual void set_shown(std::size_t luxmeter, std::optional<double> lux) = 0;
   /// Daylight is this many times that of the rig file.
   virtual void set_daylight(double factor) = 0;
   /// Advances lamps, heads and meters to `now` in steps of 10 ms, recording peaks at every step. Never goes back.

@@ -286,6 +286,7 @@ std::string to_toml(const Scenario& scenario) {
     if (event.pan_rad) out += fmt::format("pan_deg = {:.10g}\n", deg_from_rad(*event.pan_rad));
     if (event.tilt_rad) out += fmt::format("tilt_deg = {:.10g}\n", deg_from_rad(*event.tilt_rad));
     if (event.plan) out += fmt::format("plan = {}\n", quoted(event.plan->string()));
+    if (event.recording) out += fmt::format("recording = {}\n", quoted(event.recording_file.string()));
     if (event.refused) out += "refused = true\n";
   }
   for (const Expectation& expectation : scenario.expectations) {

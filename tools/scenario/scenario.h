@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -12,6 +13,7 @@
 #include "core/show/show_controller.h"
 #include "sim/faults/faults.h"
 #include "sim/world/world.h"
+#include "tools/recording/recording.h"
 
 namespace luxrig::scenario {
 
@@ -59,6 +61,7 @@ struct Event {
     shade,
     daylight,
     clock_step,
+    replay,
     stop,
     kill,
     power_cut,
@@ -76,6 +79,8 @@ struct Event {
   std::optional<double> value, for_s;
   std::optional<double> pan_rad, tilt_rad;  ///< desk
   std::optional<std::filesystem::path> plan;
+  std::filesystem::path recording_file;  ///< replay, as written: from the scenario's folder
+  std::shared_ptr<const recording::Recording> recording;
   bool refused = false;  ///< the command has to be refused; else it has to be accepted
   FilePosition in_file;
 };

@@ -10,8 +10,10 @@
 #include "core/rig/reading/section.h"
 #include "core/text/nearest.h"
 #include "sim/world/deviations_text.h"
+#include "tools/recording/of_rig.h"
 #include "tools/scenario/condition.h"
 #include "tools/scenario/desk.h"
+#include "tools/scenario/replay.h"
 
 namespace luxrig::scenario {
 namespace {
@@ -44,6 +46,7 @@ constexpr Needs kNeeds[] = {
     {What::shade, Needs::On::must, Needs::Value::must, 0, 1, true, "points"},
     {What::daylight, Needs::On::none, Needs::Value::must, 0, 1000, true, ""},
     {What::clock_step, Needs::On::none, Needs::Value::must, -1e6, 1e6, false, ""},
+    {What::replay, Needs::On::none, Needs::Value::none, 0, 0, true, ""},
     {What::stop, Needs::On::none, Needs::Value::none, 0, 0, true, ""},
     {What::kill, Needs::On::none, Needs::Value::none, 0, 0, true, ""},
     {What::power_cut, Needs::On::none, Needs::Value::none, 0, 0, true, ""},
@@ -162,6 +165,7 @@ class ScenarioReader {
     s.read("for_s", event.for_s);
     s.refuse("plan", "plan has no effect: only do = \"apply\" takes one", "remove it");
     s.refuse("refused", "nobody can refuse a fault", "remove it");
+    s.refuse("recording", "recording has no effect on a fault", "remove it");
     for (const char* key : {"pan_deg", "tilt_deg"})
       s.refuse(key, fmt::format("{} has no effect: only a desk turns heads", key), "remove it");
     std::vector<std::string> known;
@@ -221,6 +225,7 @@ class ScenarioReader {
     std::string plan;
     if (event.what != What::apply) s.refuse("plan", "plan has no effect: only do = \"apply\" takes one", "remove it");
     if (s.read("plan", plan) && event.what == What::apply) event.plan = folder_ / plan;
+    read_recording(s, event);
     if (event.what == What::desk) {
       for (const std::size_t f : event.which)
         if (!desk_rules(rig_.buses[rig_.fixtures[f].bus])) {
@@ -239,6 +244,31 @@ class ScenarioReader {
     }
     if (event.what == What::daylight && !rig_.daylight)
       problems_.add(s.place_of("do"), "this rig has no daylight", "add [daylight] to the rig file");
+  }
+
+  void read_recording(Section& s, Event& event) {
+    if (event.what != What::replay)
+      return s.refuse("recording", "recording has no effect: only do = \"replay\" takes one", "remove it");
+    std::string file;
+    if (!s.has("recording")) return s.require("recording", "which replay needs");
+    if (!s.read("recording", file)) return;
+    event.recording_file = file;
+    auto recorded = recording::read_recording(folder_ / file, recording::modbus_ports(rig_));
+    if (!recorded) {
+      for (const Problem& problem : recorded.error()) {
+        const std::string line = problem.line > 0 ? fmt::format("line {}: ", problem.line) : "";
+        problems_.add(s.place_of("recording"), fmt::format("{}: {}{}", in_quotes(file), line, problem.what),
+                      problem.mend);
+      }
+      return;
+    }
+    event.recording = std::make_shared<const recording::Recording>(std::move(*recorded));
+    if (!Replay(rig_, event.recording, Time{}).concerns_the_rig())
+      problems_.add(
+          s.place_of("recording"),
+          fmt::format("nothing in {} is for this rig: no desk of a bus with `input`, no reading of its meters",
+                      in_quotes(file)),
+          "luxrig replay FILE --info says what is in it");
   }
 
   static bool is_bypass(What what) { return what == What::bypass || what == What::end_bypass; }

@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "tools/luxrigd/daemon.h"
 #include "tools/process/clock.h"
 #include "tools/process/files.h"
 #include "tools/scenario/judge.h"
+#include "tools/scenario/replay.h"
 #include "tools/scenario/show_rules.h"
 #include "tools/scenario/stepped_bus.h"
 
@@ -174,6 +176,7 @@ class SteppedShow {
     begin_events();
     end_lasting();
     time_ = time_.load() + kTick;
+    replay();
     if (daemon_)
       daemon_->tick();
     else if (seconds() >= back_s_ - 1e-9)
@@ -356,6 +359,11 @@ class SteppedShow {
       case What::clock_step:
         stepped_wall_ahead_s = stepped_wall_ahead_s + *event.value;
         return;
+      case What::replay: {
+        const Replay& replay = replays_.try_emplace(e, rig_, event.recording, time_.load()).first->second;
+        for (const std::size_t m : replay.luxmeters()) rules_.meter_lies(seconds(), m, true);
+        return;
+      }
       case What::stop:
       case What::kill:
       case What::power_cut:
@@ -394,6 +402,8 @@ class SteppedShow {
         log("daylight as before");
         devices_.world().set_daylight(1);
         return rules_.light_is_unmodelled(seconds(), false);
+      case What::replay:
+        return end_replay(static_cast<std::size_t>(&event - scenario_.events.data()));
       case What::level:  // the daemon releases it
         return rules_.disturbed(seconds());
       case What::fault:
@@ -415,9 +425,43 @@ class SteppedShow {
       joints.tilt_rad = event.tilt_rad.value_or(joints.tilt_rad);
       command->joints = joints;
     }
+    tell_of_desk();
+  }
+
+  void tell_of_desk() {
     const bool any =
         std::any_of(wires_.desk.begin(), wires_.desk.end(), [](const auto& one) { return one.has_value(); });
     rules_.desk(seconds(), any);
+  }
+
+  /// What the recordings being replayed have by now, to desk and luxmeters.
+  void replay() {
+    for (std::size_t e = 0; e < scenario_.events.size(); ++e) {
+      const auto found = replays_.find(e);
+      if (found == replays_.end()) continue;
+      Replay& replay = found->second;
+      if (replay.is_over(time_)) {
+        ended_.insert(e);
+        end_replay(e);
+        continue;
+      }
+      for (const std::size_t m : replay.luxmeters()) devices_.world().set_shown(m, replay.reading_lx(m, time_));
+      for (const std::size_t f : replay.fixtures()) wires_.desk[f].reset();
+      for (const DeskCommand& command : replay.desk(time_)) wires_.desk[command.fixture] = command;
+      tell_of_desk();
+    }
+  }
+
+  void end_replay(std::size_t e) {
+    log("the recording is over");
+    const Replay& replay = replays_.at(e);
+    for (const std::size_t m : replay.luxmeters()) {
+      devices_.world().set_shown(m, std::nullopt);
+      rules_.meter_lies(seconds(), m, false);
+    }
+    for (const std::size_t f : replay.fixtures()) wires_.desk[f].reset();
+    replays_.erase(e);
+    tell_of_desk();
   }
 
   void set_faults(const Event& event, bool on) {
@@ -446,6 +490,7 @@ class SteppedShow {
     std::string text(event.what == What::fault ? sim::name_of(event.fault) : name_of(event.what));
     for (const std::string& name : event.on) text += " " + name;
     if (event.value) text += fmt::format(" {:g}", *event.value);
+    if (event.recording) text += " " + event.recording_file.string();
     if (event.for_s) text += fmt::format(" for {:g} s", *event.for_s);
     return text;
   }
@@ -469,6 +514,7 @@ class SteppedShow {
   Phase phase_ = Phase::idle;
   std::vector<std::optional<double>> happened_s_, held_s_;  ///< per event; held: of its condition
   std::set<std::size_t> ended_;
+  std::map<std::size_t, Replay> replays_;  ///< by event, while it lasts
   Judge judge_;
   ShowRules rules_;
   Outcome outcome_;

@@ -30,14 +30,15 @@ constexpr KeySpec kScenarioKeys[] = {
      "a fault of the simulator (`luxrig-sim --help` lists them) for the devices in `on`"},
     {"event", "do", text, "", kNone, kAny,
      "apply, blackout, lift_blackout, level, goal, release, park, bypass, end_bypass, desk, cover, shade, daylight, "
-     "clock_step, stop, kill, power_cut",
+     "clock_step, replay, stop, kill, power_cut",
      R"("level")",
      "apply: the solved plan or `plan`. level, goal: by hand, `value`. release, park, bypass: all, or those in `on`. "
      "desk: a lighting desk sends `value` (and aims) for fixtures on a bus with `input`, until it is lost. cover: a "
      "meter sees `value` of its light. shade: a point and its meter get `value` of the lamps' light. "
      "daylight: "
-     "`value` times that of the rig file. clock_step: the wall clock jumps by `value` seconds. stop: the daemon ends "
-     "in order; kill: it dies; power_cut: it and all devices "
+     "`value` times that of the rig file. clock_step: the wall clock jumps by `value` seconds. replay: desks send what "
+     "they sent in `recording`, and luxmeters that it has readings of show those. stop: the daemon ends in order; kill: "
+     "it dies; power_cut: it and all devices "
      "lose power"},
     {"event", "on", texts, "", kNone, kAny, "", R"(["dimmer"])",
      "devices, fixtures or points, by name; `*` stands for any letters, `?` for one"},
@@ -54,6 +55,8 @@ constexpr KeySpec kScenarioKeys[] = {
     {"event", "pan_deg", number, "°", kNone, kAngle, "", "30", "desk: where it turns heads"},
     {"event", "tilt_deg", number, "°", kNone, kAngle, "", "45", "desk: where it turns heads"},
     {"event", "plan", file, "", kNone, kAny, "", R"("evening.json")", "to apply"},
+    {"event", "recording", file, "", kNone, kAny, "", R"("evening.pcap")",
+     "to replay, until `for_s` or its end: a file by `luxrig record`, Wireshark, tcpdump or ola_recorder"},
     {"event", "refused", yes_no, "", "false", kAny, "", "true", "the daemon has to refuse this command"},
 
     {"expect", "always", text, "", kNone, kAny, "", R"("lux drawing-* <= 50")", "a condition that holds all the time"},
