@@ -18,7 +18,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   const ShowStatus& show = read->show;
   LUXRIG_CHECK(show.points.size() == rig.points.size() && show.fixtures.size() == rig.fixtures.size(), "another rig");
-  LUXRIG_CHECK(read->sent.size() == rig.buses.size() && read->active.size() == rig.buses.size(), "other buses");
+  LUXRIG_CHECK(read->sent.size() == rig.buses.size() && read->sends.size() == rig.buses.size(), "other buses");
   LUXRIG_CHECK(show.goals.met >= 0 && show.goals.missed >= 0 && show.goals.unknown >= 0, "fewer goals than none");
   for (const PointStatus& point : show.points)
     LUXRIG_CHECK(std::isfinite(point.goal_lx.value_or(0)), "goal {}", *point.goal_lx);

@@ -244,9 +244,8 @@ class LiveVenue final : public Venue {
       if (seen_ && at_ - seen_->at > kOldStatus) std::fill(sent_now_.begin(), sent_now_.end(), true);
       return;
     }
-    // A bus that is known to have failed is not waited for.
     for (std::size_t b = 0; b < sent_now_.size(); ++b)
-      if (!seen_ || seen->status.sent[b] != seen_->status.sent[b] || !seen->status.active[b]) sent_now_[b] = true;
+      if (!seen_ || seen->status.sent[b] != seen_->status.sent[b] || !seen->status.sends[b]) sent_now_[b] = true;
     seen_ = std::move(seen);
     status_ = seen_->status.show;
   }

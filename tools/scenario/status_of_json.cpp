@@ -43,6 +43,7 @@ class StatusReader {
       show.alarms.push_back({flag(entry, "severe", true), text(entry, "device"), text(entry, "text"), {}});
     for (const json& entry : list("overrides")) read_by_hand(entry);
     read_sent();
+    read_silent();
     if (!wrong_.empty()) return refusal(fmt::format("the daemon's status has no good \"{}\"", wrong_));
     return std::move(status_);
   }
@@ -146,7 +147,7 @@ class StatusReader {
 
   void read_sent() {
     status_.sent.assign(rig_.buses.size(), 0);
-    status_.active.assign(rig_.buses.size(), false);
+    status_.sends.assign(rig_.buses.size(), false);
     for (const json& entry : list("devices")) {
       const std::string name = text(entry, "name");
       for (std::size_t b = 0; b < rig_.buses.size(); ++b) {
@@ -154,9 +155,20 @@ class StatusReader {
         const json* sent = member(entry, "sent");
         if (sent == nullptr || !sent->is_number_unsigned()) return wrong("sent");
         status_.sent[b] = sent->get<std::uint64_t>();
-        status_.active[b] = text(entry, "life") == luxrig::name_of(Life::active);
+        status_.sends[b] = text(entry, "life") == luxrig::name_of(Life::active);
       }
     }
+  }
+
+  /// A desk's part is called by its bus and universe. In idle, the first plan waits for a desk.
+  void read_silent() {
+    for (const json& entry : list("desks")) {
+      const std::string name = text(entry, "name");
+      if (!flag(entry, "silent", true)) continue;
+      for (std::size_t b = 0; b < rig_.buses.size(); ++b)
+        if (name.starts_with(made_plain(rig_.buses[b].name))) status_.sends[b] = false;
+    }
+    if (status_.show.phase == Phase::idle) status_.sends.assign(rig_.buses.size(), false);
   }
 
   const json& root_;

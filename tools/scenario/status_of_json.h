@@ -17,7 +17,8 @@ struct DaemonStatus {
   ShowStatus show;
   double time_s = 0;                ///< since the daemon's start
   std::vector<std::uint64_t> sent;  ///< per bus: what its driver has sent
-  std::vector<bool> active;         ///< per bus: it works, as far as its driver knows
+  /// Per bus: frames are to be expected. Its driver knows of no failure, and it is not silent beside a lighting desk.
+  std::vector<bool> sends;
 };
 
 /// Cause::invalid, saying what is wrong, for any text that is no status of this rig.

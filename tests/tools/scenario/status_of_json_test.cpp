@@ -30,6 +30,10 @@ ShowStatus full_status() {
   show.fixtures.resize(rig().fixtures.size());
   show.fixtures[1].level = 0.375;
   show.alarms.push_back({true, "dmx", "does not answer", Time{}});
+  DeskStatus desk;
+  desk.name = rig().buses[1].name + ", universe 1";
+  desk.silent = true;
+  show.desks.push_back(desk);
   show.by_hand.push_back({ByHand::What::level, 2, 0.1, Time{}, Time{} + std::chrono::seconds(90)});
   show.by_hand.push_back({ByHand::What::goal, 4, 80, Time{}, {}, false, true});
   return show;
@@ -82,7 +86,7 @@ TEST(StatusOfJson, IsWhatTheDaemonWrote) {
   EXPECT_TRUE(read->show.by_hand[1].of_plan);
   EXPECT_FALSE(read->show.by_hand[1].until.has_value());
   EXPECT_EQ(read->sent, std::vector<std::uint64_t>(rig().buses.size(), 1234));
-  EXPECT_EQ(read->active, std::vector<bool>(rig().buses.size(), true));
+  EXPECT_EQ(read->sends, (std::vector<bool>{true, false, true})) << "it is silent beside a desk";
 }
 
 /// What is said of the status with one place of it changed.
