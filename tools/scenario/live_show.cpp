@@ -160,9 +160,10 @@ class LiveVenue final : public Venue {
   void in_room(const std::function<void(sim::World&)>& change) override { served_->with_world(change); }
 
   Result<void> advance() override {
-    next_ = std::max(next_ + kTick, now());
-    sleep_until(next_);
-    const Duration late = now() - next_, gap = std::max(late, served_->longest_gap());
+    const Time due = next_ + kTick;
+    sleep_until(due);
+    next_ = std::max(due, now() - kTick);
+    const Duration gap = std::max(now() - due, served_->longest_gap());
     if (gap > kStandsStill)
       return refusal(fmt::format("this computer stood still for {:.1f} s at {:.1f} s: run it again with less load",
                                  to_seconds(gap), seconds()));
