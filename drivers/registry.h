@@ -17,6 +17,7 @@ struct Redirect {
   std::string host;  ///< "127.0.0.1"
   int port = 0;
   std::string path{};  ///< of a serial port; empty = the stand-in has none
+  int desk_port{};     ///< UDP port on which a lighting desk is heard in place of `input_port`; 0 = there
 };
 
 /// One option that a driver reads from its [[bus]] entry: a row of its table in the rig-file reference.

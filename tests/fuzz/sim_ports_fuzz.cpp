@@ -10,6 +10,7 @@ namespace {
 
 void check_endpoint(const luxrig::Redirect& to) {
   LUXRIG_CHECK(to.port >= 1 && to.port <= 65535, "port {}", to.port);
+  LUXRIG_CHECK(to.desk_port >= 0 && to.desk_port <= 65535, "desk port {}", to.desk_port);
   LUXRIG_CHECK(!to.host.empty() && luxrig::is_plain_text(to.host), "host {}", to.host);
 }
 

@@ -1,7 +1,6 @@
 // luxrig-sim: a rig's devices on ports of this machine, driven by the simulated world. See README.md.
 #include <arpa/inet.h>
 #include <fmt/format.h>
-#include <poll.h>
 #include <sys/prctl.h>
 #include <unistd.h>
 
@@ -21,6 +20,7 @@
 #include "tools/command_line/version.h"
 #include "tools/luxrig-sim/control_http.h"
 #include "tools/luxrig-sim/ports_file.h"
+#include "tools/luxrig-sim/real_time.h"
 
 namespace {
 
@@ -61,26 +61,6 @@ Progress progress_on_stderr() {
     last = tenth;
     fmt::print(stderr, "luxrig-sim: light {} %\n", tenth * 10);
   };
-}
-
-// Steps the world at 100 Hz of real time and serves the wires as packets arrive, until it is asked to stop.
-void run(sim::World& world, sim::RigServer& server, std::mutex& world_mutex) {
-  const auto start = Clock::now();
-  std::vector<pollfd> waiting;
-  while (stop_asked == 0) {
-    const auto elapsed = Clock::now() - start;
-    const Time now = Time{} + std::chrono::duration_cast<Duration>(elapsed);
-    {
-      const std::lock_guard lock(world_mutex);
-      world.advance(now);
-      server.serve(now);
-    }
-    waiting.clear();
-    for (const int descriptor : server.descriptors()) waiting.push_back({descriptor, POLLIN, 0});
-    const auto rest = sim::kTick - elapsed % sim::kTick;
-    const timespec until_tick{0, std::chrono::duration_cast<std::chrono::nanoseconds>(rest).count()};
-    ::ppoll(waiting.data(), waiting.size(), &until_tick, nullptr);
-  }
 }
 
 /// The wanted place of every bus.
@@ -151,7 +131,7 @@ int simulate(const Options& options) {
                address == sim::kAnyAddress ? "the networks of this computer" : "the network of " + options.listen);
   fmt::print("ready {}\n", sim::to_json(ports));
   std::fflush(stdout);
-  run(**world, **server, world_mutex);
+  sim::serve_in_real_time(**world, **server, world_mutex, [] { return stop_asked == 0; });
   return 0;
 }
 

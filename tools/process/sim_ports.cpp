@@ -22,7 +22,13 @@ Checked<SimPorts> sim_ports_of(const std::string& text, const std::string& file)
     const auto port = j["port"].get<long long>();
     const auto host = j["host"].get<std::string>();
     if (port < 1 || port > 65535 || host.empty() || !is_plain_text(host)) return {};
-    return Redirect{host, static_cast<int>(port)};
+    Redirect to{host, static_cast<int>(port)};
+    if (!j.contains("desk_port")) return to;
+    if (!j["desk_port"].is_number_integer()) return {};
+    const auto desk_port = j["desk_port"].get<long long>();
+    if (desk_port < 1 || desk_port > 65535) return {};
+    to.desk_port = static_cast<int>(desk_port);
+    return to;
   };
   if (!json.is_object() || !json.contains("buses") || !json["buses"].is_object()) return refuse("is not a ports file");
   SimPorts ports;

@@ -1,8 +1,6 @@
 #pragma once
 /// The simulated rig as a child process, and the truth that it reports.
 
-#include <sys/types.h>
-
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -11,6 +9,7 @@
 #include "core/result.h"
 #include "core/run.h"
 #include "drivers/registry.h"
+#include "tools/process/child_process.h"
 #include "tools/process/sim_ports.h"
 
 namespace luxrig {
@@ -36,9 +35,9 @@ class SimProcess {
   [[nodiscard]] Result<SimPorts> wait_ready(const Watch& watch);
 
  private:
-  explicit SimProcess(pid_t pid, std::filesystem::path folder) : pid_(pid), folder_(std::move(folder)) {}
-  pid_t pid_ = -1;
+  explicit SimProcess(std::filesystem::path folder) : folder_(std::move(folder)) {}
   std::filesystem::path folder_;  ///< its ports file and log
+  std::optional<ChildProcess> child_;
 };
 
 /// Asks the simulator for the true light; nothing if it does not answer.

@@ -41,6 +41,7 @@ constexpr Subject kSubjects[] = {
     {Of::phase, "phase", Names::none, "", false},
     {Of::alarm, "alarm", Names::none, "", false},
     {Of::blackout, "blackout", Names::none, "", false},
+    {Of::exit, "exit", Names::none, "", true},
 };
 
 struct RelationName {
@@ -310,6 +311,8 @@ double value_at(const Condition& c, std::size_t k, const Instant& instant) {
       return has_alarm(status, c.text) ? 1 : 0;
     case Of::blackout:
       return status.blackout ? 1 : 0;
+    case Of::exit:
+      return instant.exit ? *instant.exit : NAN;
   }
   return NAN;
 }
@@ -357,6 +360,7 @@ std::string value_text(const Condition& c, std::size_t k, const Instant& instant
   if (c.of == Of::alarm) return value != 0 ? "there is such an alarm" : "there is no such alarm";
   const Subject& subject = subject_of(c.of);
   const std::string name = name_at(c, k, rig);
+  if (c.of == Of::exit && std::isnan(value)) return "no daemon has ended yet";
   if (std::isnan(value)) return fmt::format("{} of {} is not known yet", subject.name, name);
   return fmt::format("{}{}{} is {:.4g}{}{}", subject.name, name.empty() ? "" : " of ", name, value,
                      subject.unit.empty() ? "" : " ", subject.unit);

@@ -2,7 +2,7 @@
 /// Conditions as a person writes them.
 ///
 ///   SUBJECT NAME RELATION NUMBER [UNIT]     lux, reading, level, pan, tilt, lux_hours
-///   SUBJECT RELATION NUMBER                 met, missed, unknown, alarms
+///   SUBJECT RELATION NUMBER                 met, missed, unknown, alarms, exit
 ///   phase NAME · blackout · alarm TEXT
 ///
 /// RELATION: < <= > >= == !=. In place of RELATION NUMBER also `between NUMBER and NUMBER`, and `== NUMBER +- NUMBER`
@@ -26,6 +26,7 @@ struct Instant {
   std::vector<std::optional<double>> reading_lx;  ///< per luxmeter, as last sent
   std::vector<double> level;                      ///< per fixture, as sent
   std::vector<Joints> joints;                     ///< true, per fixture
+  std::optional<int> exit;                        ///< exit code of the daemon that ended last
 };
 
 /// Value of the condition's subject for the k-th of `which` (0 for a subject without names); for phase, alarm and

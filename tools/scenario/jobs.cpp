@@ -1,5 +1,6 @@
 #include "tools/scenario/jobs.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
 #include <sys/wait.h>
@@ -49,7 +50,7 @@ std::vector<Outcome> run_all(std::size_t count, int jobs, const std::function<Ou
   std::vector<Worker> workers;
   for (std::size_t w = 0; w < workers_wanted; ++w) {
     int ends[2];
-    if (::pipe(ends) != 0) break;
+    if (::pipe2(ends, O_CLOEXEC) != 0) break;  // what a run starts must not hold it open
     const pid_t pid = ::fork();
     if (pid == 0) {
       ::close(ends[0]);

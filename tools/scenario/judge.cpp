@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace luxrig::scenario {
@@ -14,7 +15,8 @@ constexpr double kInstant_s = 1e-6;
 
 }  // namespace
 
-Judge::Judge(const Scenario& scenario, const Rig& rig) : scenario_(scenario), rig_(rig) {
+Judge::Judge(const Scenario& scenario, const Rig& rig, double slack_s)
+    : scenario_(scenario), rig_(rig), slack_s_(slack_s) {
   for (const Expectation& expectation : scenario.expectations) {
     State state;
     if (!expectation.after) state.begins_s = expectation.from_s;
@@ -33,9 +35,23 @@ void Judge::happened(std::size_t event, double at_s) {
       states_[e].begins_s = at_s + scenario_.expectations[e].from_s;
 }
 
+double Judge::shrink_s(std::size_t e) const {
+  const Expectation& expectation = scenario_.expectations[e];
+  if (expectation.kind != Kind::always && expectation.kind != Kind::never) return 0;
+  // Half of a short time is still judged.
+  return std::min(slack_s_, expectation.within_s.value_or(HUGE_VAL) / 4);
+}
+
+double Judge::from_s(std::size_t e) const {
+  const bool from_start = !scenario_.expectations[e].after && !(scenario_.expectations[e].from_s > 0);
+  return *states_[e].begins_s + (from_start ? 0 : shrink_s(e));
+}
+
 double Judge::ends_s(std::size_t e) const {
-  const auto& within_s = scenario_.expectations[e].within_s;
-  return within_s ? *states_[e].begins_s + *within_s : HUGE_VAL;
+  const Expectation& expectation = scenario_.expectations[e];
+  if (!expectation.within_s) return HUGE_VAL;
+  const double ends_s = *states_[e].begins_s + *expectation.within_s - shrink_s(e);
+  return expectation.kind == Kind::reached ? ends_s + slack_s_ : ends_s;
 }
 
 void Judge::fail(std::size_t e, double at_s, std::string found) {
@@ -48,7 +64,7 @@ void Judge::fail(std::size_t e, double at_s, std::string found) {
 void Judge::look(double at_s, const Instant& instant) {
   for (std::size_t e = 0; e < states_.size(); ++e) {
     State& state = states_[e];
-    if (state.over || !state.begins_s || at_s < *state.begins_s - kInstant_s) continue;
+    if (state.over || !state.begins_s || at_s < from_s(e) - kInstant_s) continue;
     const Expectation& expectation = scenario_.expectations[e];
     const Condition& condition = expectation.condition;
     state.known = state.known || !std::isnan(value_at(condition, 0, instant));

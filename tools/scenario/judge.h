@@ -11,8 +11,8 @@ namespace luxrig::scenario {
 
 class Judge {
  public:
-  /// Both must outlive it.
-  Judge(const Scenario& scenario, const Rig& rig);
+  /// Both must outlive it. slack_s: how far the instants of the show may be off (Slack::window_s).
+  Judge(const Scenario& scenario, const Rig& rig, double slack_s = 0);
 
   void happened(std::size_t event, double at_s);
   /// Call at every instant, after the events of that instant.
@@ -28,11 +28,15 @@ class Judge {
     std::string last;                ///< value at the last look in its time
   };
   void fail(std::size_t e, double at_s, std::string found);
-  /// End of an expectation's time; after the show for one without.
+  /// Beginning and end of the time in which an expectation is judged; the end is after the show for one without. With
+  /// slack, what has to hold all the time is judged in a shorter one, and what has to be reached in a longer one.
+  [[nodiscard]] double from_s(std::size_t e) const;
   [[nodiscard]] double ends_s(std::size_t e) const;
+  [[nodiscard]] double shrink_s(std::size_t e) const;  ///< how much shorter at either end
 
   const Scenario& scenario_;
   const Rig& rig_;
+  double slack_s_;
   std::vector<State> states_;
   std::vector<Judged> judged_;
 };

@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <thread>
 
@@ -17,6 +18,7 @@
 #include "tools/process/files.h"
 #include "tools/scenario/explore.h"
 #include "tools/scenario/jobs.h"
+#include "tools/scenario/live_show.h"
 #include "tools/scenario/outcome_text.h"
 #include "tools/scenario/scenario_file.h"
 #include "tools/scenario/stepped_show.h"
@@ -35,7 +37,7 @@ struct Options {
   std::string seeds, junit, json, trace;
   std::filesystem::path results = "test-results";
   int jobs = 0;
-  bool explores = false;
+  bool explores = false, in_real_time = false;
   ExploreOptions explore;
   PrepareOptions prepare;
 };
@@ -177,6 +179,7 @@ std::string quoted_for_shell(const std::string& word) {
 }
 
 int jobs_of(const Options& options) {
+  if (options.in_real_time && options.jobs == 0) return 1;
   return options.jobs > 0 ? options.jobs : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
 }
 
@@ -218,8 +221,29 @@ int explore_rig(const Options& options) {
   return explored.findings.empty() ? kExitOk : kExitFailed;
 }
 
+Outcome run(const PreparedRig& prepared, const Scenario& scenario, std::uint64_t seed, const ShowOptions& show,
+            const Options& options) {
+  // A run in real time ends its daemon and guardian before this process ends.
+  return options.in_real_time ? run_live(prepared, scenario, seed, show, stop_on_signals())
+                              : run_stepped(prepared, scenario, seed, show);
+}
+
+void say_how_long(const std::vector<Scenario>& scenarios, int jobs) {
+  double length_s = 0;
+  std::size_t shows = 0;
+  for (const Scenario& scenario : scenarios) {
+    shows += scenario.seeds.size();
+    length_s += scenario.length_s * std::ceil(static_cast<double>(scenario.seeds.size()) / jobs);
+  }
+  fmt::print(stderr, "luxrig-test: {} show{} in real time: {}\n", shows, shows == 1 ? "" : "s",
+             length_s < 120 ? fmt::format("{:.0f} s", length_s) : fmt::format("{:.0f} minutes", length_s / 60));
+}
+
 int test(const Options& options) {
   const auto begun = Clock::now();
+  if (options.explores && options.in_real_time)
+    return report(problem("--explore", "needs thousands of shows, and --real-time takes as long as each of them",
+                          "leave one of them out"));
   if (!options.seeds.empty() && parse_seeds(options.seeds).empty())
     return report(problem("--seeds", "cannot be " + options.seeds, "write 7, 1..20 or 1,5,9..12"));
   // Scenarios are checked before light is computed.
@@ -232,17 +256,18 @@ int test(const Options& options) {
   const Rig& in = prepared->session->rig;
 
   const int jobs = jobs_of(options);
+  if (options.in_real_time) say_how_long(*scenarios, jobs);
   std::vector<Tested> tested;
   std::size_t runs = 0;
   bool passed = true;
   const bool terminal = ::isatty(STDERR_FILENO) != 0;
   for (const Scenario& scenario : *scenarios) {
     ShowOptions show;
-    show.trace = !options.trace.empty() && scenario.seeds.size() == 1;
+    show.trace = options.in_real_time || (!options.trace.empty() && scenario.seeds.size() == 1);
     auto told = Clock::now();
     auto outcomes = run_all(
         scenario.seeds.size(), jobs,
-        [&](std::size_t i) { return run_stepped(*prepared, scenario, scenario.seeds[i], show); },
+        [&](std::size_t i) { return run(*prepared, scenario, scenario.seeds[i], show, options); },
         [&](std::size_t done) {
           if (Clock::now() - told < std::chrono::seconds(terminal ? 1 : 10)) return;
           told = Clock::now();
@@ -255,19 +280,24 @@ int test(const Options& options) {
     const Outcome* worst = worst_of(tested.back().outcomes);
     std::optional<Outcome> again;
     // The same run once more, with its values: the same bytes, as everything is stepped.
-    if (worst != nullptr && worst->error.empty()) again = run_stepped(*prepared, scenario, worst->seed, {true});
-    const Outcome* shown = again ? &*again : &tested.back().outcomes.front();
+    if (worst != nullptr && worst->error.empty() && !options.in_real_time)
+      again = run_stepped(*prepared, scenario, worst->seed, {true});
+    const Outcome* shown = again ? &*again : worst != nullptr ? worst : &tested.back().outcomes.front();
     if (!held && worst != nullptr) {
       const auto page = options.results / fmt::format("{}-seed-{}.html", scenario.file.stem().string(), worst->seed);
       std::error_code ignored;
       std::filesystem::create_directories(options.results, ignored);
       if (const auto written = write_report(page, scenario, *shown); !written) return report(written.error());
-      fmt::print("        what happened: {}\n        again: luxrig test {} {} --seeds {}\n", page.string(),
-                 quoted_for_shell(options.rig.string()), quoted_for_shell(scenario.file.string()), worst->seed);
+      fmt::print("        what happened: {}\n        again: luxrig test {} {} --seeds {}{}\n", page.string(),
+                 quoted_for_shell(options.rig.string()), quoted_for_shell(scenario.file.string()), worst->seed,
+                 options.in_real_time ? " --real-time" : "");
     }
-    if (!options.trace.empty() && (again || show.trace))
+    const bool asked = scenario.seeds.size() == 1 || worst != nullptr;
+    if (!options.trace.empty() && (again || (show.trace && asked)))
       if (const auto written = write_report(options.trace, scenario, *shown); !written) return report(written.error());
     passed = passed && held;
+    if (options.in_real_time && options.trace.empty())  // it was for the page
+      for (Outcome& outcome : tested.back().outcomes) outcome.trace = {};
   }
   const auto failed =
       std::count_if(tested.begin(), tested.end(), [](const Tested& one) { return worst_of(one.outcomes) != nullptr; });
@@ -294,7 +324,9 @@ int main(int argc, char** argv) {
   app.add_option("SCENARIO", options.scenarios, "scenario files (else all in the folder `tests` of the rig)")
       ->check(offers_files());
   app.add_option("--seeds", options.seeds, "instead of those of the files: 7, 1..20 or 1,5,9..12");
-  app.add_option("--jobs", options.jobs, "processes (0: one per core)")->check(CLI::Range(0, 256));
+  app.add_flag("--real-time", options.in_real_time,
+               "run luxrigd itself, over the wire, as long as the show takes; faults of the wire act");
+  app.add_option("--jobs", options.jobs, "processes (0: one per core; in real time one)")->check(CLI::Range(0, 256));
   app.add_option("--json", options.json, "write all results here")->check(offers_files());
   app.add_option("--junit", options.junit, "write the results here, as CI systems read them")->check(offers_files());
   app.add_option("--trace", options.trace,
@@ -311,5 +343,5 @@ int main(int argc, char** argv) {
   app.add_option("--max-error", options.prepare.max_truth_error, "relative error of the true reflected light")
       ->check(CLI::Range(1e-4, 1.0));
   if (const auto end = parse_command_line(app, argc, argv)) return *end;
-  return options.explores ? explore_rig(options) : test(options);
+  return options.explores && !options.in_real_time ? explore_rig(options) : test(options);
 }

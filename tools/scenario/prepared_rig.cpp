@@ -27,7 +27,8 @@ Checked<PreparedRig> prepare(const std::filesystem::path& path, const PrepareOpt
   in_a_show.threads = 1;  // each show is one process of several
   auto looks = std::make_shared<LightOfLooks>(in_a_show);
   looks->know(*session, solved->look.joints, std::move(solved->transport));
-  return PreparedRig{session, std::move(solved->plan), std::move(light), std::move(looks), std::move(*worlds)};
+  return PreparedRig{session,   std::move(solved->plan), std::move(light),
+                     in_a_show, std::move(looks),        std::move(*worlds)};
 }
 
 }  // namespace luxrig::scenario

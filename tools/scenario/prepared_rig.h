@@ -15,6 +15,7 @@ struct PreparedRig {
   std::shared_ptr<const Session> session;
   Plan plan;        ///< of the rig's tasks, for what hangs
   KeptLight light;  ///< for the plan's joints
+  ComputeOptions compute;  ///< with which it was computed
   std::shared_ptr<LightOfLooks> looks;
   sim::WorldMaker worlds;
 };

@@ -32,7 +32,8 @@ struct Condition {
     alarms,     ///< number of severe ones
     phase,
     alarm,
-    blackout
+    blackout,
+    exit  ///< exit code of the daemon that ended last
   };
   enum class Relation { less, at_most, more, at_least, equal, not_equal, between };
 
@@ -65,6 +66,7 @@ struct Event {
     stop,
     kill,
     power_cut,
+    kill_guardian,
     fault
   };
   std::string name;  ///< empty: nothing refers to it

@@ -50,6 +50,7 @@ constexpr Needs kNeeds[] = {
     {What::stop, Needs::On::none, Needs::Value::none, 0, 0, true, ""},
     {What::kill, Needs::On::none, Needs::Value::none, 0, 0, true, ""},
     {What::power_cut, Needs::On::none, Needs::Value::none, 0, 0, true, ""},
+    {What::kill_guardian, Needs::On::none, Needs::Value::none, 0, 0, false, ""},
     {What::fault, Needs::On::must, Needs::Value::none, 0, 0, true, "devices"},
 };
 

@@ -48,12 +48,13 @@ double goal_or_limit_lx(const Rig& rig, std::size_t point, const ShowStatus& sta
 
 }  // namespace
 
-ShowRules::ShowRules(const Rig& rig) : rig_(rig), zones_(rig), judged_(rules) {
+ShowRules::ShowRules(const Rig& rig, const Slack& slack) : rig_(rig), slack_(slack), zones_(rig), judged_(rules) {
   static_assert(std::size(kSentences) == rules);
   for (std::size_t r = 0; r < rules; ++r) judged_[r].expected = kSentences[r];
   const double fastest_s = std::min({rig.control.fade_s, rig.control.correction_fade_s, rig.safe.fade_s});
   // An s-curve is steepest in its middle: 1.5 times its mean. Two fades may follow each other within a tick.
   max_step_ = fastest_s > 0 ? std::min(1.0, 1.5 * kTick_s / fastest_s * 1.25) : 1.0;
+  max_rate_per_s_ = max_step_ / kTick_s;
   last_sent_s_.assign(rig.buses.size(), NAN);
 }
 
@@ -72,6 +73,10 @@ void ShowRules::desk(double at_s, bool there) {
   desk_s_ = at_s;
 }
 
+bool ShowRules::disturbed_lately(double at_s) const {
+  return disturbed_s_ && at_s - *disturbed_s_ <= kDisturbance_s + slack_.time_s;
+}
+
 bool ShowRules::deaf_lately(double at_s) const { return deaf_ > 0 || (deaf_s_ && at_s - *deaf_s_ < kHearsAgain_s); }
 
 bool ShowRules::desk_lately(double at_s) const { return desk_ || (desk_s_ && at_s - *desk_s_ < kAfterDesk_s); }
@@ -81,6 +86,7 @@ void ShowRules::heads_may_turn(double at_s) { turning_s_ = at_s; }
 void ShowRules::blackout(double at_s, bool on) {
   disturbed(at_s);
   if (on && !dark_) dark_since_s_ = at_s;
+  if (!on) lifted_s_ = at_s;
   dark_ = on;
   dark_joints_.clear();
 }
@@ -126,6 +132,15 @@ void ShowRules::fixture_is_deaf(double at_s, bool deaf) {
 void ShowRules::daemon_gone(double at_s, const ShowStatus& last) {
   disturbed(at_s);
   gone_with_ = last;
+  if (slack_.time_s > 0) {
+    // A status that is older than the last command does not know it: what was acknowledged counts.
+    if (dark_) gone_with_->blackout = true;
+    if (lifted_s_ && at_s - *lifted_s_ < slack_.time_s) gone_with_->blackout = false;
+    std::erase_if(gone_with_->by_hand, [&](const ByHand& held) {
+      const auto hand = hands_.find(held.index);
+      return held.what == ByHand::What::level && (hand == hands_.end() || hand->second.level != held.value);
+    });
+  }
   for (double& sent_s : last_sent_s_) sent_s = NAN;
 }
 
@@ -157,7 +172,7 @@ void ShowRules::ended_in_order(double at_s, const std::vector<double>& level) {
         std::min({fixture.safe_level.value_or(rig_.buses[fixture.bus].safe_level.value_or(rig_.safe.level)),
                   fixture.max_level, rig_.limits.max_level});
     // Limits may hold a lamp below its safe level.
-    if (level[f] > safe + kLevelStep)
+    if (level[f] > safe + kLevelStep + slack_.level)
       broken(safe_at_end, at_s,
              fmt::format("{} is left at level {:.3f}, its safe level is {:.3f}", fixture.name, level[f], safe));
   }
@@ -166,7 +181,7 @@ void ShowRules::ended_in_order(double at_s, const std::vector<double>& level) {
 void ShowRules::look(double at_s, const Instant& instant, const std::vector<bool>& sent) {
   for (std::size_t b = 0; b < sent.size(); ++b) {
     if (!sent[b]) continue;
-    if (const double gap_s = at_s - last_sent_s_[b]; gap_s > kLongestWait_s)
+    if (const double gap_s = at_s - last_sent_s_[b]; gap_s > kLongestWait_s + slack_.silence_s)
       broken(waits, at_s, fmt::format("nothing was sent on bus \"{}\" for {:.2f} s", rig_.buses[b].name, gap_s));
     last_sent_s_[b] = at_s;
   }
@@ -178,9 +193,16 @@ void ShowRules::look(double at_s, const Instant& instant, const std::vector<bool
   look_at_hands(at_s, instant);
   look_at_zones(at_s, instant);
   before_ = instant.level;
+  before_s_ = at_s;
 }
 
-void ShowRules::look_without_daemon(double at_s, const Instant& instant) {
+void ShowRules::look_without_daemon(double at_s, const Instant& instant, bool guarded) {
+  if (guarded) {
+    look_at_jumps(at_s, instant);
+    look_at_blackout(at_s, instant);
+    before_ = instant.level;
+    before_s_ = at_s;
+  }
   look_at_limits(at_s, instant);
   look_at_zones(at_s, instant);
 }
@@ -188,7 +210,7 @@ void ShowRules::look_without_daemon(double at_s, const Instant& instant) {
 void ShowRules::look_at_limits(double at_s, const Instant& instant) {
   for (std::size_t f = 0; f < instant.level.size(); ++f) {
     const double most = std::min(rig_.fixtures[f].max_level, rig_.limits.max_level);
-    if (instant.level[f] > most + kLimitSlack)
+    if (instant.level[f] > most + kLimitSlack + slack_.level)
       broken(
           limits, at_s,
           fmt::format("{} is sent level {:.3f}, its highest is {:.3f}", rig_.fixtures[f].name, instant.level[f], most));
@@ -208,11 +230,14 @@ void ShowRules::look_at_limits(double at_s, const Instant& instant) {
 }
 
 void ShowRules::look_at_jumps(double at_s, const Instant& instant) {
-  if (before_.empty() || desk_lately(at_s) || (disturbed_s_ && at_s - *disturbed_s_ <= kDisturbance_s)) return;
+  if (before_.empty() || desk_lately(at_s) || disturbed_lately(at_s)) return;
+  double max_step = max_step_;
+  if (slack_.frames_s > 0)
+    max_step += max_rate_per_s_ * (slack_.frames_s + std::max(0.0, at_s - before_s_ - kTick_s)) + slack_.level;
   for (std::size_t f = 0; f < instant.level.size(); ++f) {
     if (rig_.fixtures[f].switched) continue;
     const double step = std::abs(instant.level[f] - before_[f]);
-    if (step > max_step_ + kLimitSlack)
+    if (step > max_step + kLimitSlack)
       broken(jumps, at_s,
              fmt::format("{} jumps from level {:.3f} to {:.3f}", rig_.fixtures[f].name, before_[f], instant.level[f]));
   }
@@ -254,7 +279,7 @@ void ShowRules::look_at_verdicts(double at_s, const Instant& instant) {
       continue;
     }
     const double since_s = wrong_since_s_.try_emplace(p, at_s).first->second;
-    if (at_s - since_s > kWrongFor_s)
+    if (at_s - since_s > kWrongFor_s + slack_.time_s)
       broken(met, at_s,
              fmt::format("{} is called met; its goal is {:.4g} lx, and it gets {:.4g} lx", rig_.points[p].name,
                          *point.goal_lx, instant.lux[p]));
@@ -263,7 +288,7 @@ void ShowRules::look_at_verdicts(double at_s, const Instant& instant) {
 
 void ShowRules::look_at_blackout(double at_s, const Instant& instant) {
   if (!dark_) return;
-  if (at_s - *dark_since_s_ < kUntilDark_s) return;
+  if (at_s - *dark_since_s_ < kUntilDark_s + slack_.time_s) return;
   for (std::size_t f = 0; f < instant.level.size(); ++f)
     if (instant.level[f] > 0)
       broken(dark, at_s, fmt::format("{} is sent level {:.3f} in a blackout", rig_.fixtures[f].name, instant.level[f]));
@@ -272,7 +297,7 @@ void ShowRules::look_at_blackout(double at_s, const Instant& instant) {
     dark_joints_.clear();  // a movement goes on
     return;
   }
-  if (dark_joints_.empty() && at_s - *dark_since_s_ > 1) dark_joints_ = instant.joints;
+  if (dark_joints_.empty() && at_s - *dark_since_s_ > 1 + slack_.time_s) dark_joints_ = instant.joints;
   for (std::size_t f = 0; f < dark_joints_.size(); ++f) {
     const double turned_rad = std::max(std::abs(instant.joints[f].pan_rad - dark_joints_[f].pan_rad),
                                        std::abs(instant.joints[f].tilt_rad - dark_joints_[f].tilt_rad));
@@ -292,14 +317,15 @@ void ShowRules::look_at_hands(double at_s, const Instant& instant) {
     const bool listed =
         std::any_of(instant.status->by_hand.begin(), instant.status->by_hand.end(),
                     [f = f](const ByHand& one) { return one.what == ByHand::What::level && one.index == f; });
-    if (at_s - held.since_s > 1 && !listed)
+    const bool seen = at_s - held.since_s > 1 + slack_.time_s && at_s - disturbed_s_.value_or(0) >= slack_.time_s;
+    if (seen && !listed)
       broken(
           by_hand, at_s,
           fmt::format("{} was set to level {:.3g} by hand, and is no longer held", rig_.fixtures[f].name, held.level));
     // Limits may hold it lower. Failures and blackouts override it while they last.
-    const bool just_now = disturbed_s_ && at_s - *disturbed_s_ <= kDisturbance_s;  // the status is a moment older
+    const bool just_now = disturbed_lately(at_s);  // the status is a moment older
     if (!just_now && at_s - held.since_s > kHandWithin_s && instant.status->phase == Phase::holding && !dark_ &&
-        !desk_lately(at_s) && instant.level[f] > held.level + kLevelStep)
+        !desk_lately(at_s) && instant.level[f] > held.level + kLevelStep + slack_.level)
       broken(by_hand, at_s,
              fmt::format("{} was set to level {:.3g} by hand, and is sent {:.3g}", rig_.fixtures[f].name, held.level,
                          instant.level[f]));

@@ -11,6 +11,11 @@
 ///   8 What a person holds by hand stays, within limits.
 ///   9 No beam is lit that meets a keep-out zone.
 ///  10 A daemon that ends in order leaves the safe look.
+///
+/// A venue's slack (venue.h) gives room to what it sees late or rounded: levels in 1, 7, 8 and 10 by a step of the wire;
+/// light in 2 by frames that arrive together; the silence in 3 by a busy computer; the time until an order counts in 2,
+/// 6, 7 and 8 by its way and the age of the status. Nothing else: light at points (1, 5, 6), beams (9) and what
+/// survives (4) are judged alike everywhere.
 
 #include <map>
 #include <optional>
@@ -22,13 +27,14 @@
 #include "sim/faults/faults.h"
 #include "tools/scenario/condition.h"
 #include "tools/scenario/outcome.h"
+#include "tools/scenario/venue.h"
 
 namespace luxrig::scenario {
 
 class ShowRules {
  public:
   /// The rig must outlive it.
-  explicit ShowRules(const Rig& rig);
+  explicit ShowRules(const Rig& rig, const Slack& slack = {});
 
   /// A person commanded something, or the daemon has gone or come: light may jump for a moment.
   void disturbed(double at_s);
@@ -55,8 +61,9 @@ class ShowRules {
   /// Every instant while a daemon runs. sent: whether each bus has just been written to.
   void look(double at_s, const Instant& instant, const std::vector<bool>& sent);
 
-  /// Every instant while none runs: what limits and zones forbid stays forbidden.
-  void look_without_daemon(double at_s, const Instant& instant);
+  /// Every instant while none runs: what limits and zones forbid stays forbidden. guarded: a guardian has the light,
+  /// which holds it, then fades; and it keeps a blackout.
+  void look_without_daemon(double at_s, const Instant& instant, bool guarded = false);
 
   /// One per rule.
   [[nodiscard]] std::vector<Judged> end() const { return judged_; }
@@ -69,6 +76,7 @@ class ShowRules {
   [[nodiscard]] bool deaf_lately(double at_s) const;
   /// Readings may still be those of light that is not the truth's.
   [[nodiscard]] bool unmodelled_lately(double at_s, double for_s) const;
+  [[nodiscard]] bool disturbed_lately(double at_s) const;
   void look_at_limits(double at_s, const Instant& instant);
   void look_at_jumps(double at_s, const Instant& instant);
   void look_at_meters(double at_s, const Instant& instant);
@@ -78,14 +86,17 @@ class ShowRules {
   void look_at_zones(double at_s, const Instant& instant);
 
   const Rig& rig_;
+  Slack slack_;
   KeepOutZones zones_;
   std::vector<Judged> judged_;
-  double max_step_ = 0;
-  std::optional<double> disturbed_s_, dark_since_s_, unmodelled_s_, lied_s_;
+  double max_step_ = 0;        ///< in a tick
+  double max_rate_per_s_ = 0;  ///< for what is seen later
+  std::optional<double> disturbed_s_, dark_since_s_, lifted_s_, unmodelled_s_, lied_s_;
   bool unmodelled_ = false, dark_ = false, desk_ = false;
   int deaf_ = 0, mute_ = 0;
   std::optional<double> deaf_s_, turning_s_, desk_s_;
   std::vector<double> before_;           ///< levels of the last instant
+  double before_s_ = 0;                  ///< that instant
   std::vector<double> last_sent_s_;      ///< per bus
   std::vector<Joints> dark_joints_;      ///< of heads when it went dark
   std::map<std::size_t, double> lying_;  ///< luxmeters: true lux at its point when it began to lie

@@ -3,16 +3,9 @@
 /// stepped by 20 ms. The same scenario, rig and seed give the same outcome, bit for bit. One at a time in a process:
 /// the clock is the process's own.
 
-#include "tools/scenario/outcome.h"
-#include "tools/scenario/prepared_rig.h"
-#include "tools/scenario/scenario.h"
+#include "tools/scenario/show.h"
 
 namespace luxrig::scenario {
-
-struct ShowOptions {
-  bool trace = false;            ///< record Outcome::trace
-  bool answers_expected = true;  ///< a command that is refused or accepted against its `refused` is an error
-};
 
 /// Faults that a rig without wires has no part for; a scenario with one has to be run on the wire.
 [[nodiscard]] bool acts_without_wires(sim::FaultKind fault);

@@ -30,16 +30,18 @@ constexpr KeySpec kScenarioKeys[] = {
      "a fault of the simulator (`luxrig-sim --help` lists them) for the devices in `on`"},
     {"event", "do", text, "", kNone, kAny,
      "apply, blackout, lift_blackout, level, goal, release, park, bypass, end_bypass, desk, cover, shade, daylight, "
-     "clock_step, replay, stop, kill, power_cut",
+     "clock_step, replay, stop, kill, power_cut, kill_guardian",
      R"("level")",
      "apply: the solved plan or `plan`. level, goal: by hand, `value`. release, park, bypass: all, or those in `on`. "
      "desk: a lighting desk sends `value` (and aims) for fixtures on a bus with `input`, until it is lost. cover: a "
      "meter sees `value` of its light. shade: a point and its meter get `value` of the lamps' light. "
      "daylight: "
-     "`value` times that of the rig file. clock_step: the wall clock jumps by `value` seconds. replay: desks send what "
-     "they sent in `recording`, and luxmeters that it has readings of show those. stop: the daemon ends in order; kill: "
-     "it dies; power_cut: it and all devices "
-     "lose power"},
+     "`value` times that of the rig file. clock_step: the wall clock jumps by `value` seconds (not with "
+     "`--real-time`). "
+     "replay: desks send what they sent in `recording`, and luxmeters that it has readings of show those. stop: the "
+     "daemon ends in order; kill: it dies; power_cut: it and all devices lose power; kill_guardian: the process that "
+     "has "
+     "the light after it dies (with `--real-time`)"},
     {"event", "on", texts, "", kNone, kAny, "", R"(["dimmer"])",
      "devices, fixtures or points, by name; `*` stands for any letters, `?` for one"},
     {"event", "value", number, "", kNone, {-1e6, 1e6}, "", "0.5", "of the fault or action"},

@@ -273,7 +273,8 @@ std::unique_ptr<Driver> make_artnet(const Rig& rig, std::size_t bus, const std::
     settings.share_local_port = true;
   }
   if (const DeskOptions desk = desk_options(rig.buses[bus], kOptions); desk.rules) {
-    settings.local_port = desk.port;
+    settings.local_port =
+        redirect && redirect->desk_port > 0 ? static_cast<std::uint16_t>(redirect->desk_port) : desk.port;
     settings.share_local_port = true;
   }
   return make_artnet_over(make_udp(std::move(settings)), rig, bus, redirect);

@@ -251,7 +251,8 @@ std::unique_ptr<Driver> make_sacn(const Rig& rig, std::size_t bus, const std::op
   const bool multicast = string_option(rig.buses[bus], kSacnOptions, "destination") == "multicast";
   if (redirect) interfaces.clear();
   if (const DeskOptions desk = desk_options(rig.buses[bus], kSacnOptions); desk.rules) {
-    settings.local_port = desk.port;
+    settings.local_port =
+        redirect && redirect->desk_port > 0 ? static_cast<std::uint16_t>(redirect->desk_port) : desk.port;
     settings.share_local_port = true;
   }
   if (interfaces.empty() || !multicast) interfaces.resize(1);

@@ -1,4 +1,8 @@
 // A daemon that is stopped, hung up, cut off and attacked keeps its promises.
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+
 #include <algorithm>
 
 #include "tests/tools/programs/live_rig.h"
@@ -65,6 +69,29 @@ TEST(LeftAlone, AGuardianThatDiesRepeatedlyIsReplacedAsFastAsTheFirstTime) {
     ASSERT_TRUE(wait_for([&] { return rig.guardian_pid() > 1 && rig.guardian_pid() != guardian; }, 5s)) << death;
     ASSERT_TRUE(rig.wait_status([&](const json& s) { return !unguarded(s); }, 6s)) << rig.last()["alarms"].dump(1);
   }
+}
+
+bool listens(int port) {
+  const int fd = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  address.sin_port = htons(static_cast<std::uint16_t>(port));
+  const bool connected = ::connect(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+  ::close(fd);
+  return connected;
+}
+
+// A guardian that inherited the page's sockets kept the port: no daemon came back on it, and clients hung.
+TEST(LeftAlone, AKilledDaemonsPortIsFreeWhileItsGuardianHasTheLight) {
+  LiveRig rig(source("tests/rigs/room"));
+  ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.daemon().output();
+  ASSERT_TRUE(wait_for([&] { return rig.guardian_pid() > 1; }, 5s)) << rig.daemon().output();
+  const pid_t guardian = rig.guardian_pid();
+  ASSERT_TRUE(listens(rig.port()));
+  rig.daemon().signal(SIGKILL);
+  EXPECT_TRUE(wait_for([&] { return !listens(rig.port()); }, 10s));
+  EXPECT_TRUE(runs(guardian));
 }
 
 TEST(LeftAlone, ASignalTriggersARememberedBlackout) {

@@ -87,6 +87,8 @@ Result<void> Guardian::launch() {
     sigset_t none;
     sigemptyset(&none);
     ::sigprocmask(SIG_SETMASK, &none, nullptr);
+    // Nothing else of ours: a page's socket that lived on in it would keep the port, and leave clients without answer.
+    ::close_range(3, ~0U, CLOSE_RANGE_CLOEXEC);
     ::fcntl(memory_->fd(), F_SETFD, 0);
     ::fcntl(ends[0], F_SETFD, 0);
     for (const int fd : settings_.claims) ::fcntl(fd, F_SETFD, 0);

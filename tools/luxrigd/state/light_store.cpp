@@ -72,9 +72,9 @@ std::uint64_t light_sum(std::span<const std::uint64_t> words) {
   return sum;
 }
 
-std::uint64_t light_key(const Rig& rig, const Scene& scene, const ComputeOptions& compute) {
+std::uint64_t light_key(const Rig& rig, const Scene& scene, const ComputeOptions& compute,
+                        const std::filesystem::path& program) {
   std::error_code error;
-  const std::filesystem::path program = "/proc/self/exe";
   const auto written = std::filesystem::last_write_time(program, error).time_since_epoch().count();
   const auto size = std::filesystem::file_size(program, error);
   const std::string asked = fmt::format("{} {} {} {} {} {} {} {}", static_cast<int>(compute.model), compute.max_error,

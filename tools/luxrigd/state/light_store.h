@@ -18,8 +18,10 @@ struct KeptLight {
   LightModel model;
 };
 
-/// Hash of all inputs of the model: the rig and its scene (RigVersion::light), the compute options, and this program.
-[[nodiscard]] std::uint64_t light_key(const Rig& rig, const Scene& scene, const ComputeOptions& compute);
+/// Hash of all inputs of the model: the rig and its scene (RigVersion::light), the compute options, and the program
+/// that is to use it: this one, or another of the same build.
+[[nodiscard]] std::uint64_t light_key(const Rig& rig, const Scene& scene, const ComputeOptions& compute,
+                                      const std::filesystem::path& program = "/proc/self/exe");
 
 /// Checksum over the words, stored as the last word. It detects a torn or rotten file, not a forged one.
 [[nodiscard]] std::uint64_t light_sum(std::span<const std::uint64_t> words);
