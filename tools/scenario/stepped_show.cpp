@@ -427,7 +427,8 @@ class SteppedShow {
   void tell_of_desk() {
     const bool any =
         std::any_of(wires_.desk.begin(), wires_.desk.end(), [](const auto& one) { return one.has_value(); });
-    rules_.desk(seconds(), any);
+    if (any || desk_there_) rules_.desk(seconds(), any);
+    desk_there_ = any;
   }
 
   /// What the recordings being replayed have by now, to desk and luxmeters.
@@ -497,7 +498,7 @@ class SteppedShow {
   std::unique_ptr<Daemon> daemon_;  ///< null while it is gone
   HttpHandlers handlers_;
   double back_s_ = 0, next_trace_s_ = 0;
-  bool cut_ = false;
+  bool cut_ = false, desk_there_ = false;
   std::optional<std::size_t> ending_;  ///< event that ends the daemon, while that takes time
   double ends_s_ = 0;
   ShowStatus left_;  ///< by the daemon that has gone
