@@ -60,7 +60,8 @@ std::string failures_of(const Outcome& outcome) {
   return text;
 }
 
-/// A desk on universe 101, where the rig `visitors` hears it, for ten seconds: bulb at 20 %, from 4 s on at 50 %; its plan has 79 %.
+/// A desk on universe 101, where the rig `visitors` hears it, for ten seconds: bulb at 20 %, from 4 s on at 50 %. Its
+/// plan has 79 %.
 PcapBytes recorded_desk(int priority = 100, const std::string& source = "desk") {
   PcapBytes file;
   for (int i = 0; i < 100; ++i) {
