@@ -56,6 +56,32 @@ class JudgeTest : public testing::Test {
   }
 };
 
+/// In real time what happens is seen a moment late: the ends of a time are not judged, its middle is.
+TEST_F(JudgeTest, WithSlackTheTimeOfWhatAlwaysHoldsIsShorterAndOfWhatIsReachedLonger) {
+  const auto held = [&](const std::string& expectation, double at_s) {
+    const auto scenario = parse_scenario(
+        "[scenario]\nname = \"t\"\nlength_s = 1000\n[[event]]\nname = \"it\"\nat_s = 0\ndo = \"blackout\"\n[[expect]]\n"
+        "after = \"it\"\nwithin_s = 4\n" +
+            expectation,
+        "t.toml", show.rig);
+    EXPECT_TRUE(scenario.has_value());
+    Judge judge(*scenario, show.rig, 0.25);
+    judge.happened(0, 10);
+    for (int tick = 500; tick < 800; ++tick) {
+      const double now_s = tick * kTick_s;
+      show.now.lux[0] = std::abs(now_s - at_s) < 0.05 ? 60 : 40;
+      judge.look(now_s, show.now);
+    }
+    return judge.end(16).front().held;
+  };
+  EXPECT_TRUE(held("always = \"lux work-1 < 50\"\n", 10.1));
+  EXPECT_FALSE(held("always = \"lux work-1 < 50\"\n", 10.4));
+  EXPECT_FALSE(held("always = \"lux work-1 < 50\"\n", 13.6));
+  EXPECT_TRUE(held("always = \"lux work-1 < 50\"\n", 13.9));
+  EXPECT_TRUE(held("reached = \"lux work-1 > 50\"\n", 14.15));
+  EXPECT_FALSE(held("reached = \"lux work-1 > 50\"\n", 14.5));
+}
+
 TEST_F(JudgeTest, AlwaysFailsAtTheFirstInstantThatIsOtherwise) {
   EXPECT_TRUE(verdict("always = \"lux work-1 <= 50\"", {10, 50, 20}).held);
   const Judged judged = verdict("always = \"lux work-1 <= 50\"", {10, 50.1, 60});
