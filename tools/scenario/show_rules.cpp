@@ -147,7 +147,8 @@ void ShowRules::daemon_gone(double at_s, const ShowStatus& last) {
 void ShowRules::daemon_back(double at_s, const ShowStatus& first) {
   disturbed(at_s);
   if (!gone_with_) return;
-  if (gone_with_->blackout != first.blackout)
+  // An order in its last tick is in force, and not yet in its last status.
+  if (gone_with_->blackout != first.blackout && dark_ != first.blackout)
     broken(survives, at_s, first.blackout ? "a blackout that nobody ordered" : "the blackout is gone after a restart");
   for (const ByHand& held : gone_with_->by_hand) {
     if (held.of_plan || held.until) continue;

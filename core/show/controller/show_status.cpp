@@ -17,6 +17,9 @@ std::vector<double> ShowController::State::safe_levels() const {
     const double most = bypassed.lamp(i) ? 0 : program.max_level[i];
     level.push_back(std::clamp(rig.fixtures[i].switched ? switched_level(wanted) : wanted, 0.0, most));
   }
+  // Who holds a lamp low may be working on it.
+  for (const ByHand& held : hands.all())
+    if (held.what == ByHand::What::level) level[held.index] = std::min(level[held.index], held.value);
   return level;
 }
 

@@ -156,6 +156,24 @@ TEST(ByHand, ALevelIsHeldUntilReleasedEvenAcrossPlans) {
   EXPECT_LT(show.levels()[2], 0.05);
 }
 
+// Somebody may be changing its lamp.
+TEST(ByHand, TheSafeLookLightsNoLampAboveWhatAPersonHoldsItAt) {
+  HandShow show;
+  show.rig.safe.level = 0.2;
+  show.show = std::make_unique<ShowController>(show.rig, show.model);
+  show.show->apply(show.now(), std::vector<double>{0.36, 0.36, 0.0});
+  show.run(20);
+  ASSERT_TRUE(show.show->hold(show.now(), std::vector{level_by_hand(0, 0), level_by_hand(2, 0.3)}));
+  show.run(5);
+  show.show->go_safe(show.now());
+  show.run(20);
+  EXPECT_EQ(show.status().phase, Phase::safe);
+  EXPECT_EQ(show.levels()[0], 0);
+  EXPECT_EQ(show.show->safe_look(show.now())[0], 0) << "nor does the guardian";
+  EXPECT_NEAR(show.levels()[1], 0.2, 1e-9);
+  EXPECT_NEAR(show.levels()[2], 0.2, 1e-9) << "what is held higher goes to the safe look";
+}
+
 TEST(ByHand, OpenLoopTheModelSolvesTheRestAndAReleaseRestoresLevels) {
   HandShow show(false);
   show.show->apply(show.now(), std::vector<double>{0.3, 0.36, 0.0});

@@ -111,6 +111,16 @@ TEST_F(JudgeTest, AtEndLooksAtTheEndOfItsTimeOnly) {
   EXPECT_FALSE(verdict("at_end = \"lux work-1 > 50\"\nwithin_s = 1", {60, 0, 60}).held);
 }
 
+TEST_F(JudgeTest, AFigureHoldsWithinItsTolerance) {
+  for (const char* condition :
+       {"lux work-1 between 45 and 50", "lux work-1 between 45 lx and 50 lx", "lux work-1 == 47.5 +- 2.5",
+        "lux work-1 == 47.5 lx ± 2.5 lx", "lux work-1 == 47.5 +- 5.2632 %"}) {
+    const std::string expectation = std::string("at_end = \"") + condition + "\"\n";
+    for (const double lux : {45.01, 47.5, 49.99}) EXPECT_TRUE(verdict(expectation, {lux}).held) << condition << lux;
+    for (const double lux : {44.9, 50.1}) EXPECT_FALSE(verdict(expectation, {lux}).held) << condition << lux;
+  }
+}
+
 TEST_F(JudgeTest, ATimeBeginsWithItsEvent) {
   const std::string after = "always = \"lux work-1 <= 50\"\nafter = \"it\"\nfrom_s = 1\nwithin_s = 2";
   EXPECT_TRUE(verdict(after, {90, 90, 90, 10, 10, 10, 90}, {{0, 2}}).held);
@@ -208,6 +218,16 @@ TEST_F(RulesTest, AForgottenBlackoutAndAForgottenHandBreakTheFourth) {
   EXPECT_EQ(
       broken(),
       "what was acknowledged survives a restart: spot-3 at level 0.5 is no longer held by hand after a restart\n");
+}
+
+// Its last status does not tell of it yet.
+TEST_F(RulesTest, ABlackoutInTheDaemonsLastTickSurvives) {
+  rules.blackout(at_s, true);
+  rules.daemon_gone(at_s, show.status);
+  ShowStatus after = show.status;
+  after.blackout = true;
+  rules.daemon_back(at_s + 1, after);
+  EXPECT_EQ(broken(), "");
 }
 
 TEST_F(RulesTest, LightDrivenUpByAWrongMeterBreaksTheFifth) {

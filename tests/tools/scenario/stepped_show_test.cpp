@@ -222,9 +222,9 @@ TEST(Results, AreJsonAndJunit) {
   bad.expectations = {{"always lux harbour < 20", false, 3.5, "lux of harbour is 21 lx", "", 5}};
   bad.rules = {{"light does not jump", true, {}, "", "", 0}};
   const std::vector<Tested> tested = {{scenario, {bad}}};
-  const auto json = nlohmann::json::parse(results_json("gallery", tested));
-  EXPECT_EQ(json["passed"], false);
-  EXPECT_EQ(json["scenarios"][0]["runs"][0]["expectations"][0]["at_s"], 3.5);
+  const auto results = nlohmann::json::parse(results_json("gallery", tested));
+  EXPECT_EQ(results["passed"], false);
+  EXPECT_EQ(results["scenarios"][0]["runs"][0]["expectations"][0]["at_s"], 3.5);
   const std::string xml = junit_xml("gallery", tested);
   EXPECT_NE(xml.find("<testsuite name=\"t\" tests=\"2\" failures=\"1\">"), std::string::npos) << xml;
   EXPECT_NE(xml.find("lux harbour &lt; 20, seed 1"), std::string::npos) << xml;
