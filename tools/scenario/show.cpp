@@ -242,6 +242,8 @@ class Show {
     if (event.what == What::blackout) rules_.blackout(seconds(), true);
     if (!taken) return;
     if (event.what == What::release) rules_.released(event.on);
+    if (event.what == What::bypass || event.what == What::end_bypass)
+      rules_.bypassed(seconds(), event.on, event.what == What::bypass);
     if (event.what != What::level) return;
     for (std::size_t f = 0; f < rig_.fixtures.size(); ++f)
       if (std::find(event.on.begin(), event.on.end(), rig_.fixtures[f].name) != event.on.end())
@@ -306,6 +308,7 @@ class Show {
         return;
       }
       case What::clock_step:
+        rules_.clock_stepped();
         if (const auto stepped = venue_.step_wall_clock(*event.value); !stepped)
           fail(fmt::format("line {}: {}", event.in_file.line, stepped.error().detail));
         return;
@@ -332,9 +335,10 @@ class Show {
     Event end = event;
     end.what = what;
     ++pending_;
-    venue_.command(end, {}, [this](const Result<void>&) {
+    venue_.command(end, {}, [this, end](const Result<void>&) {
       --pending_;
       rules_.disturbed(seconds());
+      if (end.what == What::end_bypass) rules_.bypassed(seconds(), end.on, false);
     });
   }
 

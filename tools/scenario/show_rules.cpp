@@ -23,6 +23,8 @@ constexpr double kWrongFor_s = 3, kAfterLie_s = 30;
 constexpr double kCalledMet = 2;
 /// How far the truth may be off the model beyond that.
 constexpr double kOffModel = 1.25;
+/// A meter that shows so much less than its light (a fifth) is believed: it could be noise, or a lamp's age.
+constexpr double kSmallLie = 0.25;
 /// A fixture that hears again gets more light than meters asked for; a sample corrects that.
 constexpr double kHearsAgain_s = 15;
 constexpr double kLongestTurn_s = 30, kAfterDesk_s = 20;
@@ -102,12 +104,34 @@ void ShowRules::released(const std::vector<std::string>& names) {
   });
 }
 
+void ShowRules::clock_stepped() {
+  std::erase_if(hands_, [](const auto& hand) { return hand.second.until_s.has_value(); });
+}
+
+void ShowRules::bypassed(double at_s, const std::vector<std::string>& names, bool on) {
+  disturbed(at_s);
+  for (const std::string& name : names) {
+    if (on)
+      bypassed_.insert(name);
+    else
+      bypassed_.erase(name);
+  }
+}
+
 void ShowRules::meter_lies(double at_s, std::size_t luxmeter, bool lies) {
   lied_s_ = at_s;
-  if (lies)
+  lies_[luxmeter] += lies ? 1 : -1;
+  if (lies_[luxmeter] > 0)
     lying_.try_emplace(luxmeter, NAN);
   else
     lying_.erase(luxmeter);
+}
+
+bool ShowRules::lied_to_lately(std::size_t point, double at_s) const {
+  const bool lately = lied_s_ && at_s - *lied_s_ < kHearsAgain_s;
+  for (const auto& [m, reasons] : lies_)
+    if (rig_.luxmeters[m].point == point && (reasons > 0 || lately)) return true;
+  return false;
 }
 
 void ShowRules::light_is_unmodelled(double at_s, bool unmodelled) {
@@ -223,6 +247,7 @@ void ShowRules::look_at_limits(double at_s, const Instant& instant) {
     double tolerance = kLimitSlack;
     for (std::size_t m = 0; m < rig_.luxmeters.size(); ++m)
       if (rig_.luxmeters[m].point == p) tolerance = std::max(tolerance, rig_.luxmeters[m].tolerance);
+    if (lied_to_lately(p, at_s)) tolerance += kSmallLie;
     if (instant.lux[p] > *rig_.points[p].max_lx * (1 + tolerance))
       broken(limits, at_s,
              fmt::format("{} gets {:.1f} lx, its limit is {:g} lx", rig_.points[p].name, instant.lux[p],
@@ -254,8 +279,8 @@ void ShowRules::look_at_meters(double at_s, const Instant& instant) {
     const double least_gain = rig_.control.gain_min * (1 - rig_.limits.open_loop_margin);
     const double allowed =
         std::max(honest_lx, goal_or_limit_lx(rig_, *point, *instant.status)) / least_gain * kOffModel + 1;
-    const bool by_hand_lately =
-        !hands_.empty() || desk_lately(at_s) || (disturbed_s_ && at_s - *disturbed_s_ < kHandWithin_s);
+    const bool by_hand_lately = !hands_.empty() || !bypassed_.empty() || desk_lately(at_s) ||
+                                (disturbed_s_ && at_s - *disturbed_s_ < kHandWithin_s);
     if (!unmodelled_ && lux > allowed && !by_hand_lately)
       broken(wrong_meter, at_s,
              fmt::format("{} gets {:.1f} lx while its luxmeter \"{}\" is wrong; the model allows {:.1f}",

@@ -19,6 +19,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -46,7 +47,11 @@ class ShowRules {
   void held_by_hand(double at_s, std::size_t fixture, double level, std::optional<double> for_s);
   /// These fixtures, by name; empty = all.
   void released(const std::vector<std::string>& names);
-  /// From now on, or no longer, this meter does not show its light.
+  /// The wall clock jumps: by it, what is held for a time may end at any restart.
+  void clock_stepped();
+  /// A person takes these devices out of the show, or puts them back.
+  void bypassed(double at_s, const std::vector<std::string>& names, bool on);
+  /// From now on, or no longer, this meter does not show its light, for one reason more or less.
   void meter_lies(double at_s, std::size_t luxmeter, bool lies);
   /// The light at the truth's points is not that of lamps and file alone: a person in it, other daylight.
   void light_is_unmodelled(double at_s, bool unmodelled);
@@ -74,6 +79,8 @@ class ShowRules {
   /// A desk shares control, or has until a moment ago.
   [[nodiscard]] bool desk_lately(double at_s) const;
   [[nodiscard]] bool deaf_lately(double at_s) const;
+  /// A meter there shows something else, or has until a moment ago.
+  [[nodiscard]] bool lied_to_lately(std::size_t point, double at_s) const;
   /// Readings may still be those of light that is not the truth's.
   [[nodiscard]] bool unmodelled_lately(double at_s, double for_s) const;
   [[nodiscard]] bool disturbed_lately(double at_s) const;
@@ -99,6 +106,8 @@ class ShowRules {
   double before_s_ = 0;                  ///< that instant
   std::vector<double> last_sent_s_;      ///< per bus
   std::vector<Joints> dark_joints_;      ///< of heads when it went dark
+  std::set<std::string> bypassed_;
+  std::map<std::size_t, int> lies_;      ///< luxmeters: reasons for which they lie
   std::map<std::size_t, double> lying_;  ///< luxmeters: true lux at its point when it began to lie
   struct Hand {
     double level = 0, since_s = 0;
