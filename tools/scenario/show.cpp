@@ -241,6 +241,8 @@ class Show {
     if (may_turn_heads(event.what)) rules_.heads_may_turn(seconds());
     if (event.what == What::blackout) rules_.blackout(seconds(), true);
     if (!taken) return;
+    if (event.what == What::goal || event.what == What::level || event.what == What::release)
+      rules_.by_hand_changed(seconds());
     if (event.what == What::release) rules_.released(event.on);
     if (event.what == What::bypass || event.what == What::end_bypass)
       rules_.bypassed(seconds(), event.on, event.what == What::bypass);

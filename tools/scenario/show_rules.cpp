@@ -9,6 +9,7 @@ namespace luxrig::scenario {
 namespace {
 
 constexpr double kTick_s = 0.02;
+constexpr double kStatusPeriod_s = 0.1;  ///< of a daemon
 /// Rounding, and a step of the lamp's output between two ticks of the truth.
 constexpr double kLimitSlack = 1e-3;
 /// After a command or a restart, light may change at once.
@@ -23,8 +24,6 @@ constexpr double kWrongFor_s = 3, kAfterLie_s = 30;
 constexpr double kCalledMet = 2;
 /// How far the truth may be off the model beyond that.
 constexpr double kOffModel = 1.25;
-/// A meter that shows so much less than its light (a fifth) is believed: it could be noise, or a lamp's age.
-constexpr double kSmallLie = 0.25;
 /// A fixture that hears again gets more light than meters asked for; a sample corrects that.
 constexpr double kHearsAgain_s = 15;
 constexpr double kLongestTurn_s = 30, kAfterDesk_s = 20;
@@ -165,6 +164,9 @@ void ShowRules::daemon_gone(double at_s, const ShowStatus& last) {
       return held.what == ByHand::What::level && (hand == hands_.end() || hand->second.level != held.value);
     });
   }
+  // Its last status may not know what was changed in its last moment.
+  if (by_hand_s_ && at_s - *by_hand_s_ < kStatusPeriod_s + slack_.time_s)
+    std::erase_if(gone_with_->by_hand, [](const ByHand& held) { return held.what == ByHand::What::goal; });
   for (double& sent_s : last_sent_s_) sent_s = NAN;
 }
 
@@ -243,11 +245,10 @@ void ShowRules::look_at_limits(double at_s, const Instant& instant) {
   // Daylight is nobody's output. Who shades a meter raises its lamps, until a sample after that corrects them.
   if (unmodelled_lately(at_s, kHearsAgain_s) || deaf_lately(at_s)) return;
   for (std::size_t p = 0; p < instant.lux.size(); ++p) {
-    if (!rig_.points[p].max_lx) continue;
+    if (!rig_.points[p].max_lx || lied_to_lately(p, at_s)) continue;  // its own rule, look_at_meters
     double tolerance = kLimitSlack;
     for (std::size_t m = 0; m < rig_.luxmeters.size(); ++m)
       if (rig_.luxmeters[m].point == p) tolerance = std::max(tolerance, rig_.luxmeters[m].tolerance);
-    if (lied_to_lately(p, at_s)) tolerance += kSmallLie;
     if (instant.lux[p] > *rig_.points[p].max_lx * (1 + tolerance))
       broken(limits, at_s,
              fmt::format("{} gets {:.1f} lx, its limit is {:g} lx", rig_.points[p].name, instant.lux[p],
@@ -270,6 +271,9 @@ void ShowRules::look_at_jumps(double at_s, const Instant& instant) {
 }
 
 void ShowRules::look_at_meters(double at_s, const Instant& instant) {
+  const Phase phase = instant.status->phase;
+  if (phase == Phase::frozen || phase == Phase::safe_fading || phase == Phase::safe) safe_look_s_ = at_s;
+  if (safe_look_s_ && at_s - *safe_look_s_ < kHearsAgain_s) return;  // no meter's doing
   for (auto& [m, honest_lx] : lying_) {
     const auto point = rig_.luxmeters[m].point;
     if (!point) continue;
@@ -318,7 +322,7 @@ void ShowRules::look_at_blackout(double at_s, const Instant& instant) {
   for (std::size_t f = 0; f < instant.level.size(); ++f)
     if (instant.level[f] > 0)
       broken(dark, at_s, fmt::format("{} is sent level {:.3f} in a blackout", rig_.fixtures[f].name, instant.level[f]));
-  const bool turning = desk_lately(at_s) || (turning_s_ && at_s - *turning_s_ < kLongestTurn_s);
+  const bool turning = desk_lately(at_s) || deaf_lately(at_s) || (turning_s_ && at_s - *turning_s_ < kLongestTurn_s);
   if (turning || instant.status->phase == Phase::moving || instant.status->plan_waits) {
     dark_joints_.clear();  // a movement goes on
     return;

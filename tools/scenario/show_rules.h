@@ -45,6 +45,8 @@ class ShowRules {
   void heads_may_turn(double at_s);
   void blackout(double at_s, bool on);
   void held_by_hand(double at_s, std::size_t fixture, double level, std::optional<double> for_s);
+  /// Something is now held by hand, or no longer.
+  void by_hand_changed(double at_s) { by_hand_s_ = at_s; }
   /// These fixtures, by name; empty = all.
   void released(const std::vector<std::string>& names);
   /// The wall clock jumps: by it, what is held for a time may end at any restart.
@@ -101,7 +103,7 @@ class ShowRules {
   std::optional<double> disturbed_s_, dark_since_s_, lifted_s_, unmodelled_s_, lied_s_;
   bool unmodelled_ = false, dark_ = false, desk_ = false;
   int deaf_ = 0, mute_ = 0;
-  std::optional<double> deaf_s_, turning_s_, desk_s_;
+  std::optional<double> deaf_s_, turning_s_, desk_s_, by_hand_s_, safe_look_s_;
   std::vector<double> before_;           ///< levels of the last instant
   double before_s_ = 0;                  ///< that instant
   std::vector<double> last_sent_s_;      ///< per bus
