@@ -31,8 +31,7 @@ Result<Picture> photograph(const RayScene& scene, const Rig& rig, const std::vec
     if (!(light.levels[f] > 0)) continue;
     const Fixture& fixture = rig.fixtures[f];
     emitters.push_back(emitter_of(rig.luminaires[fixture.luminaire],
-                                  world_from_lamp(truths[f].world_from_mount, light.joints[f], fixture.roll_rad),
-                                  light.joints[f].beam_rad));
+                                  true_lamp(truths[f], light.joints[f], fixture.roll_rad), light.joints[f].beam_rad));
     levels.push_back(light.levels[f]);
   }
   for (Emitter& day : daylight_emitters_of(rig)) {

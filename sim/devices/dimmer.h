@@ -5,10 +5,20 @@
 
 namespace luxrig::sim {
 
+struct DimmerTruth {
+  DimmerCurve nominal = DimmerCurve::linear;
+  double exponent = 1;         ///< > 0: the true curve is the nominal one raised to it
+  bool of_drive = false;       ///< the true curve is the drive raised to it, whatever the nominal one
+  double dead_band = 0;        ///< up to this drive there is no light, 0…1
+  double tail = 0;             ///< the least light above it, 0…1
+  double lag_s = 0;            ///< first-order
+  double warm_up_share = 0;    ///< so much more light when cold
+  double ageing_per_hour = 0;  ///< share of the light that is lost in an hour at full light
+};
+
 class Dimmer {
  public:
-  /// The true curve is the maker's nominal one raised to `exponent` (> 0); light follows it with a first-order lag.
-  Dimmer(DimmerCurve nominal, double exponent, double lag_s) : nominal_(nominal), exponent_(exponent), lag_s_(lag_s) {}
+  explicit Dimmer(const DimmerTruth& truth) : truth_(truth) {}
 
   /// Clamped to 0…1; a NaN is ignored, as no wire can carry one.
   void set_drive(double drive);
@@ -18,12 +28,15 @@ class Dimmer {
 
   [[nodiscard]] double drive() const { return out_ ? 0 : drive_; }                  ///< received by the lamp
   [[nodiscard]] double settled_level() const { return out_ ? 0 : settled_level_; }  ///< final value of level()
-  [[nodiscard]] double level() const { return level_; }  ///< 0…1, share of this lamp's own full light
+  /// Share of this lamp's own full light, warm and new; above 1 while it is cold.
+  [[nodiscard]] double level() const { return level_ * condition_; }
 
  private:
-  DimmerCurve nominal_;
-  double exponent_, lag_s_;
+  DimmerTruth truth_;
   double drive_ = 0, settled_level_ = 0, level_ = 0;
+  double warmth_ = 0, hours_ = 0;  ///< 0 cold … 1 as after ten minutes at full light; at full light
+  double condition_ = 1;           ///< light over that of a warm, new lamp
+  double since_condition_s_ = 0;
   bool out_ = false;
 };
 

@@ -12,17 +12,30 @@ double turned_towards(double from_rad, double to_rad, double max_rad) {
 
 }  // namespace
 
-Head::Head(const Fixture& fixture)
+Head::Head(const Fixture& fixture, double pan_scale, double backlash_rad)
     : moves_(fixture.moves),
       range_(fixture.range),
       pan_speed_rad_s_(fixture.pan_speed_rad_s),
       tilt_speed_rad_s_(fixture.tilt_speed_rad_s),
       zoom_speed_rad_s_(fixture.zoom_speed_rad_s),
+      pan_scale_(pan_scale),
+      half_play_rad_(0.5 * backlash_rad),
       joints_(fixture.joints),
-      target_(fixture.joints) {
+      target_(fixture.joints),
+      lamp_(fixture.joints) {
   if (!moves_) return;
   set_target(Joints{});
-  joints_ = target_;
+  joints_ = lamp_ = target_;
+  drag();
+}
+
+/// The lamp follows its motors, within the play of the gears. Axes simulated elsewhere have play of their own.
+void Head::drag() {
+  const double play_rad = carried_ ? 0 : half_play_rad_;
+  const double pan_rad = carried_ ? joints_.pan_rad : joints_.pan_rad * pan_scale_;
+  lamp_.pan_rad = std::clamp(lamp_.pan_rad, pan_rad - play_rad, pan_rad + play_rad);
+  lamp_.tilt_rad = std::clamp(lamp_.tilt_rad, joints_.tilt_rad - play_rad, joints_.tilt_rad + play_rad);
+  lamp_.beam_rad = joints_.beam_rad;
 }
 
 void Head::set_target(const Joints& joints) {
@@ -50,6 +63,7 @@ void Head::step(double dt_s) {
     joints_.tilt_rad = turned_towards(joints_.tilt_rad, target_.tilt_rad, tilt_speed_rad_s_ * dt_s);
   }
   joints_.beam_rad = turned_towards(joints_.beam_rad, target_.beam_rad, zoom_speed_rad_s_ * dt_s);
+  if (moves_) drag();
 }
 
 }  // namespace luxrig::sim

@@ -9,17 +9,23 @@
 namespace luxrig::sim {
 
 void LuxmeterDevice::step(double true_lx, double dt_s, std::uint64_t tick) {
-  sensor_lx_ = lagged(sensor_lx_, true_lx * truth_.gain, dt_s, truth_.lag_s);
+  const double hours = static_cast<double>(tick) * dt_s / 3600;
+  sensor_lx_ = lagged(sensor_lx_, true_lx * truth_.gain * (1 + truth_.drift_per_hour * hours), dt_s, truth_.lag_s);
   const auto period = static_cast<std::uint64_t>(std::max(1, truth_.ticks_per_sample));
-  if (tick % period != static_cast<std::uint64_t>(truth_.first_tick) % period) return;
-  const double noisy =
-      sensor_lx_ * (1 + truth_.noise * random_normal(truth_.seed, Draw::meter_noise, truth_.index, tick));
-  // The counter behind the display is a whole number and cannot pass full scale.
-  const double full_scale_counts = std::floor(truth_.range_lx / truth_.lux_per_count);
-  const double counts = std::clamp(std::round(noisy / truth_.lux_per_count), 0.0, full_scale_counts);
-  reading_lx_ = counts * truth_.lux_per_count;
-  at_tick_ = tick;
-  ++sample_;
+  if (tick % period == static_cast<std::uint64_t>(truth_.first_tick) % period) {
+    const double noisy =
+        sensor_lx_ * (1 + truth_.noise * random_normal(truth_.seed, Draw::meter_noise, truth_.index, tick));
+    // The counter behind the display is a whole number and cannot pass full scale.
+    const double full_scale_counts = std::floor(truth_.range_lx / truth_.lux_per_count);
+    const double counts = std::clamp(std::round(noisy / truth_.lux_per_count), 0.0, full_scale_counts);
+    on_the_way_.emplace_back(tick + static_cast<std::uint64_t>(truth_.latency_ticks), counts * truth_.lux_per_count);
+  }
+  while (!on_the_way_.empty() && on_the_way_.front().first <= tick) {
+    reading_lx_ = on_the_way_.front().second;
+    at_tick_ = tick;
+    ++sample_;
+    on_the_way_.pop_front();
+  }
 }
 
 }  // namespace luxrig::sim

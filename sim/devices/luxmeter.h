@@ -1,9 +1,11 @@
 #pragma once
 /// The reading of a luxmeter: gain error, first-order lag, noise, saturation and quantisation, in a real sensor's
 /// order, sampled a few times a second and held in between.
-/// Not modelled: cosine error (the direction of the light is unknown here) and drift.
+/// Cosine error is in the light that it is given (World).
 
 #include <cstdint>
+#include <deque>
+#include <utility>
 
 namespace luxrig::sim {
 
@@ -11,6 +13,8 @@ struct MeterTruth {
   double gain = 1;           ///< reading over true
   double noise = 0;          ///< standard deviation, fraction of reading
   double lag_s = 0;          ///< first-order
+  double drift_per_hour = 0;  ///< of the gain
+  int latency_ticks = 0;      ///< of the world's 10 ms, from a sample to the reading that shows it
   double range_lx = 200000;  ///< saturates there
   double lux_per_count = 0.001;
   int ticks_per_sample = 20;  ///< of the world's 10 ms: 5 readings a second
@@ -28,13 +32,15 @@ class LuxmeterDevice {
 
   [[nodiscard]] double reading_lx() const { return reading_lx_; }
   [[nodiscard]] std::uint64_t sample() const { return sample_; }            ///< number of samples so far
-  [[nodiscard]] std::uint64_t sampled_at_tick() const { return at_tick_; }  ///< time of the reading
+  /// Time at which the reading began to show: a meter does not tell its latency.
+  [[nodiscard]] std::uint64_t sampled_at_tick() const { return at_tick_; }
   [[nodiscard]] const MeterTruth& truth() const { return truth_; }
 
  private:
   MeterTruth truth_;
   double sensor_lx_ = 0, reading_lx_ = 0;
   std::uint64_t sample_ = 0, at_tick_ = 0;
+  std::deque<std::pair<std::uint64_t, double>> on_the_way_;  ///< tick at which it shows, reading
 };
 
 }  // namespace luxrig::sim

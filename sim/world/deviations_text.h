@@ -8,7 +8,7 @@
 
 namespace luxrig::sim {
 
-/// "usual", "none", or either followed by changes: "none,meter_noise=0.003,lamp_lag_s=0.05". Keys are the fields of
+/// "mild", "real", "bad", "none", or one followed by changes: "none,meter_noise=0.003,lamp_lag_s=0.05". Keys are the fields of
 /// Deviations (sim/world/world.h). The seed stays 1. Problems name no place in the text.
 [[nodiscard]] Checked<Deviations> parse_deviations(const std::string& text, const std::string& file = "--deviations");
 

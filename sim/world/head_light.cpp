@@ -23,7 +23,8 @@ class SampledHeadLight final : public HeadLight {
                                    [fixture](const HeadSamples& each) { return each.fixture == fixture; });
     if (head == heads_.end()) return;
     add_indirect(*head, beam_mount(joints), lux);
-    const Pose world_from_lamp = luxrig::world_from_lamp(head->world_from_mount, joints, head->roll_rad);
+    Pose world_from_lamp = luxrig::world_from_lamp(head->world_from_mount, joints, head->roll_rad);
+    world_from_lamp.rotation = world_from_lamp.rotation * head->photometry_from_lamp;
     const Emitter emitter = emitter_of(head->luminaire, world_from_lamp, joints.beam_rad);
     for (std::size_t r = 0; r < receivers_.size(); ++r) {
       if (!(head->sees[r] > 0)) continue;

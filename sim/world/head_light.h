@@ -23,6 +23,7 @@ struct HeadSamples {
   std::size_t fixture = 0;
   Pose world_from_mount;  ///< true
   double roll_rad = 0;
+  Mat3 photometry_from_lamp = Mat3::Identity();
   Luminaire luminaire;           ///< with its size, colour and TILT
   std::vector<double> sees;      ///< per receiver: unoccluded share of the lamp times the transmission of glass, 0…1
   std::vector<Vec3> aims_mount;  ///< unit beam directions

@@ -23,7 +23,23 @@ enum class Draw : std::uint64_t {
   fault_garble,
   picture_noise,
   fault_duplicate,
-  fault_reorder
+  fault_reorder,
+  drive_exponent,
+  dead_band,
+  tail,
+  warm_up,
+  ageing,
+  photometry_angle,
+  backlash,
+  wrong_head,
+  wrong_line,
+  reflectance,
+  object_place,
+  cloud,
+  visit,
+  meter_latency,
+  meter_cosine,
+  meter_drift
 };
 
 [[nodiscard]] inline std::uint64_t mix64(std::uint64_t x) {

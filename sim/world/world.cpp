@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/check.h"
+#include "core/rig/frames.h"
 #include "sim/devices/dimmer.h"
 #include "sim/devices/head.h"
 #include "sim/devices/luxmeter.h"
@@ -16,25 +17,36 @@ namespace {
 
 constexpr std::size_t kMaxViolations = 1000;
 constexpr int kTicksPerSample = 20;  // 5 readings a second
+constexpr std::uint64_t kTicksPerSecond = 100;
+/// Between a point and a corner of the object that it lies on.
+constexpr double kOnAnObject_m = 0.3;
 
 class MatrixWorld final : public World {
  public:
   MatrixWorld(const Rig& rig, const Deviations& deviations, const Eigen::MatrixXd& lux_per_level,
-              std::unique_ptr<const HeadLight> heads, Eigen::VectorXd fixed_lx)
+              std::unique_ptr<const HeadLight> heads, Eigen::VectorXd fixed_lx, MeterResponse response)
       : points_(rig.points.size()),
         truths_(draw_fixtures(rig, deviations)),
         lux_per_level_(lux_per_level),
         head_light_(std::move(heads)),
         fixed_lx_(std::move(fixed_lx)),
+        response_(std::move(response)),
+        seed_(deviations.seed),
+        cloud_share_(deviations.cloud_share),
+        visits_per_minute_(deviations.visits_per_hour / 60),
         level_(Eigen::VectorXd::Zero(lux_per_level.cols())),
         lux_(fixed_lx_),
         peak_lx_(lux_),
         lamp_share_(Eigen::VectorXd::Ones(lux_.size())),
+        visited_(Eigen::VectorXd::Ones(lux_.size())),
         cover_(Eigen::VectorXd::Ones(static_cast<Eigen::Index>(rig.luxmeters.size()))),
         shown_(rig.luxmeters.size()) {
     for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
-      dimmers_.emplace_back(rig.fixtures[f].dimmer_curve, truths_[f].curve_exponent, deviations.lamp_lag_s);
-      heads_.emplace_back(rig.fixtures[f]);
+      const FixtureTruth& truth = truths_[f];
+      dimmers_.emplace_back(DimmerTruth{rig.fixtures[f].dimmer_curve, truth.curve_exponent, truth.of_drive,
+                                        truth.dead_band, truth.tail, deviations.lamp_lag_s, truth.warm_up_share,
+                                        truth.ageing_per_hour});
+      heads_.emplace_back(rig.fixtures[f], truth.pan_scale, truth.backlash_rad);
       if (head_light_ && rig.fixtures[f].moves) {
         moving_.push_back(f);
         turn_light(f);
@@ -47,6 +59,11 @@ class MatrixWorld final : public World {
           1 + deviations.meter_gain_share * meter.tolerance * random_signed(deviations.seed, Draw::meter_gain, m, 0);
       truth.noise = deviations.meter_noise;
       truth.lag_s = deviations.meter_lag_s;
+      truth.drift_per_hour = deviations.meter_drift_per_hour * random_signed(deviations.seed, Draw::meter_drift, m, 0);
+      truth.latency_ticks = static_cast<int>(std::lround(
+          (deviations.meter_latency_min_s + (deviations.meter_latency_max_s - deviations.meter_latency_min_s) *
+                                                random_unit(deviations.seed, Draw::meter_latency, m, 0)) /
+          to_seconds(kTick)));
       truth.range_lx = meter.range_lx;
       truth.lux_per_count = meter.patch.lux_per_count;
       truth.ticks_per_sample = kTicksPerSample;
@@ -59,12 +76,14 @@ class MatrixWorld final : public World {
     }
     for (const Point& point : rig.points) limits_lx_.push_back(point.max_lx);
     open_violation_.assign(points_, false);
+    light_meters();
     watch_limits();  // daylight may already exceed one
   }
 
   void set_drive(std::size_t fixture, double drive) override {
     LUXRIG_CHECK(fixture < dimmers_.size(), "fixture {} of {}", fixture, dimmers_.size());
-    dimmers_[fixture].set_drive(drive);
+    for (std::size_t f = 0; f < dimmers_.size(); ++f)
+      if (truths_[f].line == fixture) dimmers_[f].set_drive(drive);
   }
 
   void set_lamp_out(std::size_t fixture, bool out) override {
@@ -74,7 +93,8 @@ class MatrixWorld final : public World {
 
   void set_aim_target(std::size_t fixture, const Joints& joints) override {
     LUXRIG_CHECK(fixture < heads_.size(), "fixture {} of {}", fixture, heads_.size());
-    heads_[fixture].set_target(joints);
+    for (std::size_t f = 0; f < heads_.size(); ++f)
+      if (truths_[f].line == fixture) heads_[f].set_target(joints);
   }
 
   void set_joints(std::size_t fixture, const Joints& joints) override {
@@ -165,16 +185,66 @@ class MatrixWorld final : public World {
       changed = changed || level != level_[i];
       level_[i] = level;
     }
+    if (tick_ % kTicksPerSecond == 0 && (cloud_share_ > 0 || visits_per_minute_ > 0)) {
+      cloud_ = 1 + cloud_share_ * cloud_at(now());
+      visited_ = visits_at(now());
+      changed = true;
+    }
     if (changed) {  // a rig at rest only costs its meters
       lux_.noalias() = lux_per_level_ * level_;
-      lux_ = lux_.cwiseProduct(lamp_share_) + daylight_ * fixed_lx_;
+      lux_ = lux_.cwiseProduct(lamp_share_).cwiseProduct(visited_) + daylight_ * cloud_ * fixed_lx_;
       peak_lx_ = peak_lx_.cwiseMax(lux_);
       watch_limits();
+      light_meters();
     }
     for (std::size_t m = 0; m < meters_.size(); ++m) {
       const auto i = static_cast<Eigen::Index>(m);
-      meters_[m].step(cover_[i] * lux_[static_cast<Eigen::Index>(points_) + i], dt_s, tick_);
+      meters_[m].step(cover_[i] * metered_lx_[i], dt_s, tick_);
     }
+  }
+
+  /// What meters make of the light, by the angles from which it comes.
+  void light_meters() {
+    const auto first = static_cast<Eigen::Index>(points_), count = static_cast<Eigen::Index>(meters_.size());
+    if (response_.of_fixtures.size() == 0) {
+      metered_lx_ = lux_.tail(count);
+      return;
+    }
+    metered_lx_ = lux_per_level_.bottomRows(count).cwiseProduct(response_.of_fixtures) * level_;
+    metered_lx_ = metered_lx_.cwiseProduct(lamp_share_.tail(count)).cwiseProduct(visited_.tail(count)) +
+                  daylight_ * cloud_ * fixed_lx_.segment(first, count).cwiseProduct(response_.of_daylight);
+  }
+
+  /// Per row: the share of the lamps' light that whoever stands there now leaves.
+  [[nodiscard]] Eigen::VectorXd visits_at(Time at) const {
+    Eigen::VectorXd share = Eigen::VectorXd::Ones(lux_.size());
+    const double minutes = to_seconds(at.time_since_epoch()) / 60;
+    for (double minute = std::max(0.0, std::floor(minutes) - 1); minute <= minutes && points_ > 0; ++minute) {
+      const auto k = static_cast<std::uint64_t>(minute);
+      const auto draw = [&](std::uint64_t what) { return random_unit(seed_, Draw::visit, what, k); };
+      const double begin = minute + draw(1), end = begin + 0.2 + 0.8 * draw(2);
+      if (!(draw(0) < visits_per_minute_) || minutes < begin || minutes >= end) continue;
+      const std::size_t point = random_bits(seed_, Draw::visit, 3, k) % points_;
+      const double left = 0.2 + 0.7 * draw(4);
+      share[static_cast<Eigen::Index>(point)] *= left;
+      for (std::size_t m = 0; m < meter_points_.size(); ++m)
+        if (meter_points_[m] == point) share[static_cast<Eigen::Index>(points_ + m)] *= left;
+    }
+    return share;
+  }
+
+  /// −1…1, smooth: clouds of three minutes, and smaller ones.
+  [[nodiscard]] double cloud_at(Time at) const {
+    double sum = 0;
+    for (const auto& [period_s, share] : {std::pair{180.0, 0.7}, std::pair{40.0, 0.3}}) {
+      const double x = to_seconds(at.time_since_epoch()) / period_s, from = std::floor(x), u = x - from;
+      const auto k = static_cast<std::uint64_t>(from);
+      const auto device = static_cast<std::uint64_t>(period_s);
+      const double a = random_signed(seed_, Draw::cloud, device, k),
+                   b = random_signed(seed_, Draw::cloud, device, k + 1);
+      sum += share * (a + (b - a) * u * u * (3 - 2 * u));
+    }
+    return sum;
   }
 
   void turn_light(std::size_t fixture) {
@@ -218,8 +288,12 @@ class MatrixWorld final : public World {
   std::vector<LuxmeterDevice> meters_;
   std::vector<double> meter_gains_;
   std::vector<std::optional<double>> limits_lx_;
-  Eigen::VectorXd fixed_lx_, level_, lux_, peak_lx_;
-  Eigen::VectorXd lamp_share_, cover_;  ///< per row; per luxmeter
+  Eigen::VectorXd fixed_lx_;
+  MeterResponse response_;
+  std::uint64_t seed_;
+  double cloud_share_, visits_per_minute_, cloud_ = 1;
+  Eigen::VectorXd level_, lux_, peak_lx_, metered_lx_;
+  Eigen::VectorXd lamp_share_, visited_, cover_;  ///< per row; per row, by chance; per luxmeter
   std::vector<std::optional<double>> shown_;  ///< per luxmeter: in place of its light
   double daylight_ = 1;
   bool changed_ = false;  ///< light, by something else than lamps and heads
@@ -239,35 +313,164 @@ Deviations Deviations::none() {
   return none;
 }
 
+Deviations Deviations::real() {
+  Deviations real;
+  real.output_max = 1.2;
+  real.drive_exponent_min = 0.8;
+  real.drive_exponent_max = 2.4;
+  real.dead_band = 0.04;
+  real.tail = 0.01;
+  real.warm_up_share = 0.05;
+  real.ageing_per_hour = 1e-5;  // 10 % in ten thousand hours
+  real.photometry_angle_rad = rad_from_deg(3);
+  real.position_error_m = 0.05;                // up to 15 cm
+  real.angle_error_rad = rad_from_deg(5) / 3;  // up to 5°
+  real.backlash_rad = rad_from_deg(2);
+  real.reflectance_spread = 0.15;
+  real.object_error_m = 0.05;
+  real.cloud_share = 0.3;
+  real.visits_per_hour = 4;
+  real.meter_gain_share = 1;
+  real.meter_noise = 0.02;
+  real.meter_latency_min_s = 0.1;
+  real.meter_latency_max_s = 2;
+  real.meter_cosine_exponent = 0.1;
+  real.meter_drift_per_hour = 0.001;
+  return real;
+}
+
+Deviations Deviations::bad() {
+  Deviations bad = real();
+  bad.output_min = 0.6;
+  bad.wrong_heads = 0.25;
+  bad.wrong_lines = 0.1;
+  return bad;
+}
+
+namespace {
+
+/// Emitters of one housing hang together.
+std::size_t mount_of(const Rig& rig, std::size_t f) { return rig.fixtures[f].housing.value_or(f); }
+
+Mat3 turn(const Vec3& rad) {
+  const double angle_rad = rad.norm();
+  return angle_rad > 0 ? Eigen::AngleAxisd(angle_rad, rad / angle_rad).toRotationMatrix() : Mat3::Identity();
+}
+
+void hang_wrongly(const Deviations& deviations, std::size_t mount, FixtureTruth& truth) {
+  if (!(random_unit(deviations.seed, Draw::wrong_head, mount, 0) < deviations.wrong_heads)) return;
+  switch (random_bits(deviations.seed, Draw::wrong_head, mount, 1) % 3) {
+    case 0:  // upside down, as on a floor
+      truth.world_from_mount.rotation =
+          truth.world_from_mount.rotation * Eigen::AngleAxisd(kPi, Vec3::UnitX()).toRotationMatrix();
+      return;
+    case 1:
+      truth.pan_scale = -1;
+      return;
+    default:  // set to 540° on the head, to 630° in the file
+      truth.pan_scale = 540.0 / 630.0;
+      return;
+  }
+}
+
+}  // namespace
+
 std::vector<FixtureTruth> draw_fixtures(const Rig& rig, const Deviations& deviations) {
   const std::uint64_t seed = deviations.seed;
   std::vector<FixtureTruth> truths;
   for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
+    const std::size_t mount = mount_of(rig, f);
     FixtureTruth truth;
+    truth.line = f;
     truth.output = deviations.output_min +
                    (deviations.output_max - deviations.output_min) * random_unit(seed, Draw::lamp_output, f, 0);
     truth.curve_exponent = 1 + deviations.curve_exponent_spread * random_signed(seed, Draw::curve_exponent, f, 0);
+    if (deviations.drive_exponent_min > 0) {
+      truth.of_drive = true;
+      truth.curve_exponent =
+          deviations.drive_exponent_min + (deviations.drive_exponent_max - deviations.drive_exponent_min) *
+                                              random_unit(seed, Draw::drive_exponent, f, 0);
+    }
+    truth.dead_band = deviations.dead_band * random_unit(seed, Draw::dead_band, f, 0);
+    truth.tail = deviations.tail * random_unit(seed, Draw::tail, f, 0);
+    truth.warm_up_share = deviations.warm_up_share * random_unit(seed, Draw::warm_up, f, 0);
+    truth.ageing_per_hour = deviations.ageing_per_hour * random_unit(seed, Draw::ageing, f, 0);
+    truth.backlash_rad = deviations.backlash_rad * random_unit(seed, Draw::backlash, mount, 0);
     Vec3 offset_m, turn_rad;
     for (int axis = 0; axis < 3; ++axis) {
       const auto counter = static_cast<std::uint64_t>(axis);
-      offset_m[axis] = deviations.position_error_m * random_normal(seed, Draw::mount_position, f, counter);
-      turn_rad[axis] = deviations.angle_error_rad * random_normal(seed, Draw::mount_angle, f, counter);
+      offset_m[axis] = deviations.position_error_m * random_normal(seed, Draw::mount_position, mount, counter);
+      turn_rad[axis] = deviations.angle_error_rad * random_normal(seed, Draw::mount_angle, mount, counter);
     }
-    const Pose& nominal = rig.fixtures[f].world_from_mount;
-    truth.world_from_mount = nominal;
+    truth.world_from_mount = rig.fixtures[f].world_from_mount;
     truth.world_from_mount.translation_m += offset_m;
-    if (const double angle_rad = turn_rad.norm(); angle_rad > 0) {
-      truth.world_from_mount.rotation =
-          Eigen::AngleAxisd(angle_rad, turn_rad / angle_rad).toRotationMatrix() * nominal.rotation;
+    truth.world_from_mount.rotation = turn(turn_rad) * truth.world_from_mount.rotation;
+    if (deviations.photometry_angle_rad > 0) {
+      const double about_rad = kPi * random_signed(seed, Draw::photometry_angle, f, 0);
+      truth.photometry_from_lamp =
+          turn(deviations.photometry_angle_rad * random_unit(seed, Draw::photometry_angle, f, 1) *
+               Vec3(std::cos(about_rad), std::sin(about_rad), 0));
     }
+    if (rig.fixtures[f].moves) hang_wrongly(deviations, mount, truth);
     truths.push_back(truth);
+  }
+  for (std::size_t f = 0; f + 1 < truths.size(); ++f) {
+    if (!(random_unit(seed, Draw::wrong_line, f, 0) < deviations.wrong_lines)) continue;
+    // Two of a kind, each alone in its housing.
+    if (truths[f].line != f || rig.fixtures[f].moves != rig.fixtures[f + 1].moves || rig.fixtures[f].housing ||
+        rig.fixtures[f + 1].housing)
+      continue;
+    std::swap(truths[f].line, truths[f + 1].line);
   }
   return truths;
 }
 
+Pose true_lamp(const FixtureTruth& truth, const Joints& joints, double roll_rad) {
+  Pose pose = world_from_lamp(truth.world_from_mount, joints, roll_rad);
+  pose.rotation = pose.rotation * truth.photometry_from_lamp;
+  return pose;
+}
+
+Joints true_joints(const FixtureTruth& truth, const Joints& commanded) {
+  Joints joints = commanded;
+  joints.pan_rad *= truth.pan_scale;
+  return joints;
+}
+
+Scene true_scene(Scene scene, const Rig& rig, const Deviations& deviations) {
+  for (std::size_t m = 0; m < scene.materials.size() && deviations.reflectance_spread > 0; ++m) {
+    const double factor = 1 + deviations.reflectance_spread * random_signed(deviations.seed, Draw::reflectance, m, 0);
+    scene.materials[m].reflectance_rgb = (factor * scene.materials[m].reflectance_rgb).cwiseMin(kMaxReflectance);
+  }
+  if (!(deviations.object_error_m > 0)) return scene;
+  const std::size_t objects = scene.object_names.size();
+  std::vector<std::uint32_t> object_of_vertex(scene.vertices_m.size(), 0);
+  for (std::size_t t = 0; t < scene.triangles.size(); ++t)
+    for (const std::uint32_t v : scene.triangles[t]) object_of_vertex[v] = scene.object_of_triangle[t];
+  // A point on an object is where the object is: such objects stay.
+  std::vector<bool> stays(objects, false);
+  const auto keep = [&](const Vec3& point_m) {
+    for (std::size_t v = 0; v < scene.vertices_m.size(); ++v)
+      if (object_of_vertex[v] > 0 &&
+          (scene.vertex_world_m(static_cast<std::uint32_t>(v)) - point_m).norm() < kOnAnObject_m)
+        stays[object_of_vertex[v]] = true;
+  };
+  for (const Point& point : rig.points) keep(point.position_world_m);
+  for (const Luxmeter& meter : rig.luxmeters) keep(meter.position_world_m);
+  for (std::size_t v = 0; v < scene.vertices_m.size(); ++v) {
+    const std::uint32_t object = object_of_vertex[v];
+    if (object == 0 || stays[object]) continue;  // 0: the room itself
+    const double about_rad = kPi * random_signed(deviations.seed, Draw::object_place, object, 0);
+    const double far_m = deviations.object_error_m * random_unit(deviations.seed, Draw::object_place, object, 1);
+    scene.vertices_m[v] +=
+        Vec3f(static_cast<float>(far_m * std::cos(about_rad)), static_cast<float>(far_m * std::sin(about_rad)), 0);
+  }
+  return scene;
+}
+
 Result<std::unique_ptr<World>> World::make(const Rig& rig, const Deviations& deviations,
                                            const Eigen::MatrixXd& lux_per_level, std::unique_ptr<const HeadLight> heads,
-                                           const Eigen::VectorXd& fixed_lx) {
+                                           const Eigen::VectorXd& fixed_lx, const MeterResponse& response) {
   const auto rows = static_cast<Eigen::Index>(rig.points.size() + rig.luxmeters.size());
   const auto columns = static_cast<Eigen::Index>(rig.fixtures.size());
   if (lux_per_level.rows() != rows || lux_per_level.cols() != columns) {
@@ -285,7 +488,7 @@ Result<std::unique_ptr<World>> World::make(const Rig& rig, const Deviations& dev
     return tl::unexpected(
         Fault{Cause::invalid, "", "the fixed light has another size, or an entry that is negative or not finite", {}});
   }
-  return std::make_unique<MatrixWorld>(rig, deviations, lux_per_level, std::move(heads), std::move(fixed));
+  return std::make_unique<MatrixWorld>(rig, deviations, lux_per_level, std::move(heads), std::move(fixed), response);
 }
 
 }  // namespace luxrig::sim

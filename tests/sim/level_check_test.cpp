@@ -25,7 +25,7 @@ struct LitScene {
 constexpr double kHeldExposure_s = 0.02;
 
 LevelStep step_of(const LitScene& lit, double level, std::uint64_t& number) {
-  sim::Dimmer dimmer(DimmerCurve::linear, lit.dimmer_exponent, 0);
+  sim::Dimmer dimmer({DimmerCurve::linear, lit.dimmer_exponent});
   dimmer.set_drive(level);
   std::vector<double> scene;
   for (int y = 0; y < 120; ++y)

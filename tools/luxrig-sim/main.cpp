@@ -40,7 +40,7 @@ struct Options {
   bool standard_ports = false;
   std::string listen = "127.0.0.1";
   double max_error = 0.01;
-  std::string deviations = "usual";
+  std::string deviations = "mild";
   bool with_parent = false;
 };
 
@@ -157,7 +157,8 @@ int main(int argc, char** argv) {
                  "IPv4 address of the buses; 0.0.0.0: all. The control port stays on 127.0.0.1");
   app.add_option("--max-error", options.max_error, "relative error of the true light transport")
       ->check(CLI::Range(1e-4, 1.0));
-  app.add_option("--deviations", options.deviations, "usual, none, or changes: none,meter_noise=0.003");
+  app.add_option("--deviations", options.deviations,
+                 "mild, real, bad, none, or changes to one: real,meter_noise=0.003");
   app.add_flag("--with-parent", options.with_parent, "end when the program that started this ends");
   if (const auto end = parse_command_line(app, argc, argv)) return *end;
 

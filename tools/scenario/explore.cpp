@@ -263,7 +263,7 @@ std::string to_toml(const Scenario& scenario) {
   std::string out = fmt::format("[scenario]\nname = {}\nlength_s = {}\nseeds = \"{}\"\n", quoted(scenario.name),
                                 scenario.length_s, fmt::join(seeds, ", "));
   if (scenario.starts_dark) out += "start = \"dark\"\n";
-  if (scenario.deviations_text != "usual") out += fmt::format("deviations = {}\n", quoted(scenario.deviations_text));
+  if (scenario.deviations_text != "mild") out += fmt::format("deviations = {}\n", quoted(scenario.deviations_text));
   const auto names_of = [](const std::vector<std::string>& names) {
     std::vector<std::string> all;
     for (const std::string& name : names) all.push_back(quoted(name));

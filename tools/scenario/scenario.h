@@ -106,7 +106,7 @@ struct Scenario {
   std::string name;
   double length_s = 0;
   std::vector<std::uint64_t> seeds = {1};
-  std::string deviations_text = "usual";
+  std::string deviations_text = "mild";
   sim::Deviations deviations;
   bool starts_dark = false;
   std::vector<Event> events;

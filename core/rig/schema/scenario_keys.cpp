@@ -13,8 +13,8 @@ constexpr KeySpec kScenarioKeys[] = {
     {"scenario", "length_s", number, "s", kRequired, {0, 1e6, true}, "", "240", "how long the show runs"},
     {"scenario", "seeds", text, "", R"("1")", kAny, "", R"("1..20")",
      "seeds of the simulated truth, each a run of its own: `\"7\"`, `\"1..20\"` or `\"1, 5, 9..12\"`"},
-    {"scenario", "deviations", text, "", R"("usual")", kAny, "", R"("none,output_min=0.7,output_max=1")",
-     "how far the truth differs from the rig file: `usual`, `none`, or either with changes, as `luxrig-sim "
+    {"scenario", "deviations", text, "", R"("mild")", kAny, "", R"("none,output_min=0.7,output_max=1")",
+     "how far the truth differs from the rig file: `mild`, `real`, `bad`, `none`, or one with changes, as `luxrig-sim "
      "--deviations` takes them"},
     {"scenario", "start", text, "", R"("solved")", kAny, "solved, dark", R"("dark")",
      "solved: the rig's tasks are solved, and the plan is applied at 0 s; dark: nothing is applied until an event "

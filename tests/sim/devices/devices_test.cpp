@@ -14,7 +14,7 @@ namespace {
 
 TEST(SimulatedDimmer, RaisesTheNominalCurveToItsExponent) {
   for (const DimmerCurve curve : {DimmerCurve::linear, DimmerCurve::square, DimmerCurve::s_curve}) {
-    Dimmer dimmer(curve, 1.08, 0);
+    Dimmer dimmer({curve, 1.08});
     for (const double drive : {0.0, 0.1, 0.5, 0.9, 1.0}) {
       dimmer.set_drive(drive);
       dimmer.step(0.01);
@@ -24,7 +24,7 @@ TEST(SimulatedDimmer, RaisesTheNominalCurveToItsExponent) {
 }
 
 TEST(SimulatedDimmer, ArrivesInFiniteTime) {
-  Dimmer dimmer(DimmerCurve::linear, 1, 0.05);
+  Dimmer dimmer({.lag_s = 0.05});
   dimmer.set_drive(0.37);
   for (int i = 0; i < 200; ++i) dimmer.step(0.01);
   EXPECT_EQ(dimmer.level(), 0.37);
