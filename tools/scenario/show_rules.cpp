@@ -86,6 +86,10 @@ void ShowRules::heads_may_turn(double at_s) { turning_s_ = at_s; }
 
 void ShowRules::blackout(double at_s, bool on) {
   disturbed(at_s);
+  // In the dark no meter teaches anything: what a wrong one taught before is corrected after it.
+  if (!on && dark_)
+    for (std::optional<double>* last_s : {&lied_s_, &unmodelled_s_})
+      if (*last_s && **last_s > *dark_since_s_ - kHearsAgain_s) *last_s = at_s;
   if (on && !dark_) dark_since_s_ = at_s;
   if (!on) lifted_s_ = at_s;
   dark_ = on;
