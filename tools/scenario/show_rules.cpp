@@ -170,7 +170,10 @@ void ShowRules::daemon_gone(double at_s, const ShowStatus& last) {
   }
   // Its last status may not know what was changed in its last moment.
   if (by_hand_s_ && at_s - *by_hand_s_ < kStatusPeriod_s + slack_.time_s)
-    std::erase_if(gone_with_->by_hand, [](const ByHand& held) { return held.what == ByHand::What::goal; });
+    std::erase_if(gone_with_->by_hand, [&](const ByHand& held) {
+      const auto hand = hands_.find(held.index);
+      return held.what == ByHand::What::goal || hand == hands_.end() || hand->second.level != held.value;
+    });
   for (double& sent_s : last_sent_s_) sent_s = NAN;
 }
 
