@@ -59,8 +59,7 @@ struct WorstCase {
 struct Correction {
   std::vector<double> level;     ///< per fixture; within max_level and, in the worst case of the evidence, all limits
   std::vector<double> aimed_lx;  ///< per point of the rig: present prediction at `level`
-  std::vector<std::string>
-      why;  ///< per point: why it misses its goal; empty if it does not, has none, or in For::drift
+  std::vector<std::string> why;  ///< per point: why it misses its goal; empty: it does not, or For::drift
 };
 
 /// The levels of a show before any luxmeter is read: within the limits, with the margins that then apply. One per

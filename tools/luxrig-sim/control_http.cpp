@@ -33,7 +33,7 @@ std::optional<HttpResponse> unknown_key(const nlohmann::json& json, std::span<co
 class Server final : public ControlHttp {
  public:
   explicit Server(const ControlParts& parts)
-      : parts_(parts), cameras_(parts.rig, parts.world, parts.world_mutex, parts.seed), server_(options()) {
+      : parts_(parts), cameras_(parts.rig, parts.world, parts.world_mutex, parts.deviations), server_(options()) {
     in_the_light_.shade.assign(parts_.rig.points.size(), 1);
     in_the_light_.cover.assign(parts_.rig.luxmeters.size(), 1);
   }

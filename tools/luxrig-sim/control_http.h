@@ -22,7 +22,7 @@ struct ControlParts {
   World& world;
   Faults& faults;
   std::mutex& world_mutex;  ///< guards `world`
-  std::uint64_t seed;       ///< of the noise of the cameras' sensors
+  Deviations deviations;    ///< of that world, for what cameras see
   std::string rig_json;     ///< the body of GET /rig
 };
 

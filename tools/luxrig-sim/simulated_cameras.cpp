@@ -15,7 +15,7 @@ Result<std::string> SimulatedCameras::take(const PictureCamera& camera) {
   if (!rays_) {
     const auto scene = build_scene(rig_);
     if (!scene) return refusal(scene.error().front().text());
-    rays_ = std::make_unique<RayScene>(*scene);
+    rays_ = std::make_unique<RayScene>(true_scene(*scene, rig_, deviations_));
   }
   LightNow light;
   {
@@ -23,7 +23,7 @@ Result<std::string> SimulatedCameras::take(const PictureCamera& camera) {
     light = {world_.levels(), world_.joints()};
   }
   Shot shot;
-  shot.seed = seed_;
+  shot.seed = deviations_.seed;
   shot.number = shots_++;
   const auto picture = photograph(*rays_, rig_, world_.fixtures(), light, camera, Sensor{}, shot);
   if (!picture) return tl::unexpected(picture.error());

@@ -15,8 +15,8 @@ namespace luxrig::sim {
 class SimulatedCameras {
  public:
   /// All arguments outlive this; world_mutex guards world.
-  SimulatedCameras(const Rig& rig, const World& world, std::mutex& world_mutex, std::uint64_t seed)
-      : rig_(rig), world_(world), world_mutex_(world_mutex), seed_(seed) {}
+  SimulatedCameras(const Rig& rig, const World& world, std::mutex& world_mutex, const Deviations& deviations)
+      : rig_(rig), world_(world), world_mutex_(world_mutex), deviations_(deviations) {}
 
   /// A picture in the format PFM. Takes seconds, at low priority, one picture at a time. The wires are served all the
   /// while.
@@ -26,7 +26,7 @@ class SimulatedCameras {
   const Rig& rig_;
   const World& world_;
   std::mutex& world_mutex_;
-  std::uint64_t seed_;
+  Deviations deviations_;  ///< of the room; their seed is that of the noise, too
   std::mutex mutex_;  ///< guards the two members below
   std::unique_ptr<RayScene> rays_;
   std::uint64_t shots_ = 0;

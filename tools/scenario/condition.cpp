@@ -312,7 +312,7 @@ double value_at(const Condition& c, std::size_t k, const Instant& instant) {
     case Of::blackout:
       return status.blackout ? 1 : 0;
     case Of::exit:
-      return instant.exit ? *instant.exit : NAN;
+      return instant.exit ? static_cast<double>(*instant.exit) : NAN;
   }
   return NAN;
 }

@@ -292,9 +292,7 @@ Outcome run_live(const PreparedRig& rig, const Scenario& scenario, std::uint64_t
         "start = \"dark\": a daemon always starts with a plan: leave out --real-time, or begin with a blackout";
     return none;
   }
-  sim::Deviations deviations = scenario.deviations;
-  deviations.seed = seed;
-  auto world = rig.worlds.world(deviations);
+  auto world = rig.world_of(scenario, seed);
   if (!world) {
     none.error = world.error().detail;
     return none;

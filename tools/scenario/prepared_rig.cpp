@@ -31,4 +31,10 @@ Checked<PreparedRig> prepare(const std::filesystem::path& path, const PrepareOpt
                      in_a_show, std::move(looks),        std::move(*worlds)};
 }
 
+Result<std::unique_ptr<sim::World>> PreparedRig::world_of(const Scenario& scenario, std::uint64_t seed) const {
+  sim::Deviations deviations = scenario.deviations;
+  deviations.seed = seed;
+  return worlds.world(deviations);
+}
+
 }  // namespace luxrig::scenario

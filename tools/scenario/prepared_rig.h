@@ -8,6 +8,7 @@
 #include "core/tasks/session.h"
 #include "sim/world/world.h"
 #include "tools/luxrigd/light_of_looks.h"
+#include "tools/scenario/scenario.h"
 
 namespace luxrig::scenario {
 
@@ -18,6 +19,9 @@ struct PreparedRig {
   ComputeOptions compute;  ///< with which it was computed
   std::shared_ptr<LightOfLooks> looks;
   sim::WorldMaker worlds;
+
+  /// The simulated truth of a run.
+  [[nodiscard]] Result<std::unique_ptr<sim::World>> world_of(const Scenario& scenario, std::uint64_t seed) const;
 };
 
 struct PrepareOptions {

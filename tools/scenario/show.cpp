@@ -390,10 +390,14 @@ class Show {
         joints.tilt_rad = event.tilt_rad.value_or(joints.tilt_rad);
         command->joints = joints;
       }
-      venue_.desk(f, command);
-      desks_[f] = on;
+      set_desk(f, command);
     }
     tell_of_desk();
+  }
+
+  void set_desk(std::size_t fixture, const std::optional<DeskCommand>& command) {
+    venue_.desk(fixture, command);
+    desks_[fixture] = command.has_value();
   }
 
   void tell_of_desk() {
@@ -407,26 +411,27 @@ class Show {
 
   /// What the recordings being replayed have by now, to desk and luxmeters.
   void replay() {
-    for (std::size_t e = 0; e < scenario_.events.size(); ++e) {
-      const auto found = replays_.find(e);
-      if (found == replays_.end()) continue;
-      Replay& replay = found->second;
-      if (replay.is_over(replay_time())) {
-        ended_.insert(e);
-        end_replay(e);
+    const Time at = replay_time();
+    std::vector<std::size_t> over;
+    for (auto& [e, replay] : replays_) {
+      if (replay.is_over(at)) {
+        over.push_back(e);
         continue;
       }
       venue_.in_room([&](sim::World& world) {
-        for (const std::size_t m : replay.luxmeters()) world.set_shown(m, replay.reading_lx(m, replay_time()));
+        for (const std::size_t m : replay.luxmeters()) world.set_shown(m, replay.reading_lx(m, at));
       });
       std::map<std::size_t, DeskCommand> sent;
-      for (const DeskCommand& command : replay.desk(replay_time())) sent[command.fixture] = command;
+      for (const DeskCommand& command : replay.desk(at)) sent[command.fixture] = command;
       for (const std::size_t f : replay.fixtures()) {
         const auto command = sent.find(f);
-        desks_[f] = command != sent.end();
-        venue_.desk(f, desks_[f] ? std::optional(command->second) : std::nullopt);
+        set_desk(f, command != sent.end() ? std::optional(command->second) : std::nullopt);
       }
       tell_of_desk();
+    }
+    for (const std::size_t e : over) {
+      ended_.insert(e);
+      end_replay(e);
     }
   }
 
@@ -437,10 +442,7 @@ class Show {
       venue_.in_room([&](sim::World& world) { world.set_shown(m, std::nullopt); });
       rules_.meter_lies(seconds(), m, false);
     }
-    for (const std::size_t f : replay.fixtures()) {
-      desks_[f] = false;
-      venue_.desk(f, std::nullopt);
-    }
+    for (const std::size_t f : replay.fixtures()) set_desk(f, std::nullopt);
     replays_.erase(e);
     tell_of_desk();
   }

@@ -87,11 +87,15 @@ void ShowRules::heads_may_turn(double at_s) { turning_s_ = at_s; }
 void ShowRules::blackout(double at_s, bool on) {
   disturbed(at_s);
   // In the dark no meter teaches anything: what a wrong one taught before is corrected after it.
-  if (!on && dark_)
-    for (std::optional<double>* last_s : {&lied_s_, &unmodelled_s_})
-      if (*last_s && **last_s > *dark_since_s_ - kHearsAgain_s) *last_s = at_s;
+  if (!on && dark_) {
+    const auto again = [&](double& changed_s) {
+      if (changed_s > *dark_since_s_ - kHearsAgain_s) changed_s = at_s;
+    };
+    for (auto& [meter, lie] : lies_) again(lie.changed_s);
+    if (unmodelled_s_) again(*unmodelled_s_);
+  }
   if (on && !dark_) dark_since_s_ = at_s;
-  if (!on) lifted_s_ = at_s;
+  blackout_s_ = at_s;
   dark_ = on;
   dark_joints_.clear();
 }
@@ -122,19 +126,22 @@ void ShowRules::bypassed(double at_s, const std::vector<std::string>& names, boo
 }
 
 void ShowRules::meter_lies(double at_s, std::size_t luxmeter, bool lies) {
-  lied_s_ = at_s;
-  lies_[luxmeter] += lies ? 1 : -1;
-  if (lies_[luxmeter] > 0)
-    lying_.try_emplace(luxmeter, NAN);
-  else
-    lying_.erase(luxmeter);
+  Lie& lie = lies_[luxmeter];
+  lie.reasons += lies ? 1 : -1;
+  lie.changed_s = at_s;
+  if (lie.reasons == 0) lie.honest_lx = NAN;
 }
 
 bool ShowRules::lied_to_lately(std::size_t point, double at_s) const {
-  const bool lately = lied_s_ && at_s - *lied_s_ < kHearsAgain_s;
-  for (const auto& [m, reasons] : lies_)
-    if (rig_.luxmeters[m].point == point && (reasons > 0 || lately)) return true;
-  return false;
+  return std::any_of(lies_.begin(), lies_.end(), [&](const auto& of) {
+    return rig_.luxmeters[of.first].point == point &&
+           (of.second.reasons > 0 || at_s - of.second.changed_s < kHearsAgain_s);
+  });
+}
+
+bool ShowRules::any_lies_lately(double at_s, double for_s) const {
+  return std::any_of(lies_.begin(), lies_.end(),
+                     [&](const auto& of) { return of.second.reasons > 0 || at_s - of.second.changed_s <= for_s; });
 }
 
 void ShowRules::light_is_unmodelled(double at_s, bool unmodelled) {
@@ -159,17 +166,10 @@ void ShowRules::fixture_is_deaf(double at_s, bool deaf) {
 void ShowRules::daemon_gone(double at_s, const ShowStatus& last) {
   disturbed(at_s);
   gone_with_ = last;
-  if (slack_.time_s > 0) {
-    // A status that is older than the last command does not know it: what was acknowledged counts.
-    if (dark_) gone_with_->blackout = true;
-    if (lifted_s_ && at_s - *lifted_s_ < slack_.time_s) gone_with_->blackout = false;
-    std::erase_if(gone_with_->by_hand, [&](const ByHand& held) {
-      const auto hand = hands_.find(held.index);
-      return held.what == ByHand::What::level && (hand == hands_.end() || hand->second.level != held.value);
-    });
-  }
-  // Its last status may not know what was changed in its last moment.
-  if (by_hand_s_ && at_s - *by_hand_s_ < kStatusPeriod_s + slack_.time_s)
+  // Its last status may not know its last commands: what was acknowledged counts.
+  const double unknown_s = kStatusPeriod_s + slack_.time_s;
+  if (blackout_s_ && at_s - *blackout_s_ < unknown_s) gone_with_->blackout = dark_;
+  if (by_hand_s_ && at_s - *by_hand_s_ < unknown_s)
     std::erase_if(gone_with_->by_hand, [&](const ByHand& held) {
       const auto hand = hands_.find(held.index);
       return held.what == ByHand::What::goal || hand == hands_.end() || hand->second.level != held.value;
@@ -180,8 +180,7 @@ void ShowRules::daemon_gone(double at_s, const ShowStatus& last) {
 void ShowRules::daemon_back(double at_s, const ShowStatus& first) {
   disturbed(at_s);
   if (!gone_with_) return;
-  // An order in its last tick is in force, and not yet in its last status.
-  if (gone_with_->blackout != first.blackout && dark_ != first.blackout)
+  if (gone_with_->blackout != first.blackout)
     broken(survives, at_s, first.blackout ? "a blackout that nobody ordered" : "the blackout is gone after a restart");
   for (const ByHand& held : gone_with_->by_hand) {
     if (held.of_plan || held.until) continue;
@@ -281,15 +280,15 @@ void ShowRules::look_at_meters(double at_s, const Instant& instant) {
   const Phase phase = instant.status->phase;
   if (phase == Phase::frozen || phase == Phase::safe_fading || phase == Phase::safe) safe_look_s_ = at_s;
   if (safe_look_s_ && at_s - *safe_look_s_ < kHearsAgain_s) return;  // no meter's doing
-  for (auto& [m, honest_lx] : lying_) {
+  for (auto& [m, lie] : lies_) {
     const auto point = rig_.luxmeters[m].point;
-    if (!point) continue;
+    if (!point || lie.reasons == 0) continue;
     const double lux = instant.lux[*point];
-    if (std::isnan(honest_lx)) honest_lx = lux;
+    if (std::isnan(lie.honest_lx)) lie.honest_lx = lux;
     // Lamps that give the least that readings can make it believe need most.
     const double least_gain = rig_.control.gain_min * (1 - rig_.limits.open_loop_margin);
     const double allowed =
-        std::max(honest_lx, goal_or_limit_lx(rig_, *point, *instant.status)) / least_gain * kOffModel + 1;
+        std::max(lie.honest_lx, goal_or_limit_lx(rig_, *point, *instant.status)) / least_gain * kOffModel + 1;
     const bool by_hand_lately = !hands_.empty() || !bypassed_.empty() || desk_lately(at_s) ||
                                 (disturbed_s_ && at_s - *disturbed_s_ < kHandWithin_s);
     if (!unmodelled_ && lux > allowed && !by_hand_lately)
@@ -300,8 +299,8 @@ void ShowRules::look_at_meters(double at_s, const Instant& instant) {
 }
 
 void ShowRules::look_at_verdicts(double at_s, const Instant& instant) {
-  const bool believable = lying_.empty() && !desk_lately(at_s) && (!lied_s_ || at_s - *lied_s_ > kAfterLie_s) &&
-                          !unmodelled_lately(at_s, kAfterLie_s);
+  const bool believable =
+      !any_lies_lately(at_s, kAfterLie_s) && !desk_lately(at_s) && !unmodelled_lately(at_s, kAfterLie_s);
   if (!believable || instant.status->phase != Phase::holding || instant.status->blackout) {
     wrong_since_s_.clear();
     return;

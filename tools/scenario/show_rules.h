@@ -17,6 +17,7 @@
 /// 6, 7 and 8 by its way and the age of the status. Nothing else: light at points (1, 5, 6), beams (9) and what
 /// survives (4) are judged alike everywhere.
 
+#include <cmath>
 #include <map>
 #include <optional>
 #include <set>
@@ -83,6 +84,7 @@ class ShowRules {
   [[nodiscard]] bool deaf_lately(double at_s) const;
   /// A meter there shows something else, or has until a moment ago.
   [[nodiscard]] bool lied_to_lately(std::size_t point, double at_s) const;
+  [[nodiscard]] bool any_lies_lately(double at_s, double for_s) const;
   /// Readings may still be those of light that is not the truth's.
   [[nodiscard]] bool unmodelled_lately(double at_s, double for_s) const;
   [[nodiscard]] bool disturbed_lately(double at_s) const;
@@ -100,7 +102,7 @@ class ShowRules {
   std::vector<Judged> judged_;
   double max_step_ = 0;        ///< in a tick
   double max_rate_per_s_ = 0;  ///< for what is seen later
-  std::optional<double> disturbed_s_, dark_since_s_, lifted_s_, unmodelled_s_, lied_s_;
+  std::optional<double> disturbed_s_, dark_since_s_, blackout_s_, unmodelled_s_;
   bool unmodelled_ = false, dark_ = false, desk_ = false;
   int deaf_ = 0, mute_ = 0;
   std::optional<double> deaf_s_, turning_s_, desk_s_, by_hand_s_, safe_look_s_;
@@ -109,8 +111,12 @@ class ShowRules {
   std::vector<double> last_sent_s_;      ///< per bus
   std::vector<Joints> dark_joints_;      ///< of heads when it went dark
   std::set<std::string> bypassed_;
-  std::map<std::size_t, int> lies_;      ///< luxmeters: reasons for which they lie
-  std::map<std::size_t, double> lying_;  ///< luxmeters: true lux at its point when it began to lie
+  struct Lie {
+    int reasons = 0;
+    double changed_s = 0;    ///< when one came or went
+    double honest_lx = NAN;  ///< true light at its point when it began; NaN: not seen yet
+  };
+  std::map<std::size_t, Lie> lies_;  ///< by luxmeter: all that have lied
   struct Hand {
     double level = 0, since_s = 0;
     std::optional<double> until_s;

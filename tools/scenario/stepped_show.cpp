@@ -198,9 +198,7 @@ Outcome run_stepped(const PreparedRig& rig, const Scenario& scenario, std::uint6
           fmt::format("line {}: a stepped show has no guardian to kill: run it with --real-time", event.in_file.line);
       return none;
     }
-  sim::Deviations deviations = scenario.deviations;
-  deviations.seed = seed;
-  auto world = rig.worlds.world(deviations);
+  auto world = rig.world_of(scenario, seed);
   if (!world) {
     none.error = world.error().detail;
     return none;

@@ -37,11 +37,9 @@ constexpr KeySpec kScenarioKeys[] = {
      "meter sees `value` of its light. shade: a point and its meter get `value` of the lamps' light. "
      "daylight: "
      "`value` times that of the rig file. clock_step: the wall clock jumps by `value` seconds (not with "
-     "`--real-time`). "
-     "replay: desks send what they sent in `recording`, and luxmeters that it has readings of show those. stop: the "
-     "daemon ends in order; kill: it dies; power_cut: it and all devices lose power; kill_guardian: the process that "
-     "has "
-     "the light after it dies (with `--real-time`)"},
+     "`--real-time`). replay: desks send what they sent in `recording`, and luxmeters that it has readings of show "
+     "those. stop: the daemon ends in order; kill: it dies; power_cut: it and all devices lose power; kill_guardian: "
+     "the process that has the light after it dies (with `--real-time`)"},
     {"event", "on", texts, "", kNone, kAny, "", R"(["dimmer"])",
      "devices, fixtures or points, by name; `*` stands for any letters, `?` for one"},
     {"event", "value", number, "", kNone, {-1e6, 1e6}, "", "0.5", "of the fault or action"},

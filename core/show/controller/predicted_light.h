@@ -15,12 +15,12 @@ namespace luxrig {
 class PredictedLight {
  public:
   /// As estimator.at_point().
-  const Prediction& at_point(const GainEstimator& estimator, std::size_t point, std::span<const double> level) {
+  Prediction at_point(const GainEstimator& estimator, std::size_t point, std::span<const double> level) {
     Kept& kept = kept_at(estimator, level);
     return one_of(kept.points, point, [&] { return estimator.at_point(point, level); });
   }
   /// As estimator.at_meter(). `level` holds what is known of lost lamps.
-  const Prediction& at_meter(const GainEstimator& estimator, std::size_t luxmeter, std::span<const double> level) {
+  Prediction at_meter(const GainEstimator& estimator, std::size_t luxmeter, std::span<const double> level) {
     Kept& kept = kept_at(estimator, level);
     return one_of(kept.meters, luxmeter, [&] { return estimator.at_meter(luxmeter, level); });
   }
@@ -43,7 +43,7 @@ class PredictedLight {
     return oldest;
   }
   template <class Predict>
-  static const Prediction& one_of(std::vector<std::optional<Prediction>>& all, std::size_t which, Predict predict) {
+  static Prediction one_of(std::vector<std::optional<Prediction>>& all, std::size_t which, Predict predict) {
     if (which >= all.size()) all.resize(which + 1);
     if (!all[which]) all[which] = predict();
     return *all[which];

@@ -84,7 +84,7 @@ bool ShowController::State::seen_by_a_meter(std::size_t fixture, std::span<const
   chosen[fixture] = 1;
   for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) {
     if (!readings.measured()[i] || health.meter_lost(i)) continue;
-    const Prediction& there = predicted.at_meter(estimator, i, level);
+    const Prediction there = predicted.at_meter(estimator, i, level);
     const double its_lx = level[fixture] * estimator.share_at_meter(i, chosen, level) * there.lux;
     if (its_lx >= kSurelySeen * GainEstimator::smallest_jump_lx(there)) return true;
   }

@@ -228,6 +228,25 @@ TEST_F(RulesTest, ABlackoutInTheDaemonsLastTickSurvives) {
   after.blackout = true;
   rules.daemon_back(at_s + 1, after);
   EXPECT_EQ(broken(), "");
+  rules.blackout(at_s + 2, true);
+  rules.daemon_gone(at_s + 2, show.status);
+  rules.daemon_back(at_s + 3, show.status);
+  EXPECT_EQ(broken(), "what was acknowledged survives a restart: the blackout is gone after a restart\n");
+}
+
+// Only the point where it hangs is excused.
+TEST_F(RulesTest, AMeterThatLiesExcusesNoLimitElsewhere) {
+  const std::size_t point = *show.rig.luxmeters[0].point;
+  ASSERT_NE(show.rig.luxmeters[1].point, point);
+  show.rig.points[point].max_lx = 50;
+  ShowRules limited(show.rig);
+  limited.meter_lies(1, 0, true);
+  limited.meter_lies(2, 0, false);
+  limited.meter_lies(20, 1, true);
+  show.now.lux[point] = 90;
+  limited.look(21, show.now, {});
+  const auto judged = limited.end();
+  EXPECT_FALSE(judged[0].held) << "its own meter has been right for a long time";
 }
 
 TEST_F(RulesTest, LightDrivenUpByAWrongMeterBreaksTheFifth) {
