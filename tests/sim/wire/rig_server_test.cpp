@@ -10,6 +10,7 @@
 #include <cstring>
 
 #include "tests/sim/tiny_rig.h"
+#include "tests/sim/wire/sacn_one_slot.h"
 
 namespace luxrig::sim {
 namespace {
@@ -70,17 +71,6 @@ struct Served {
   Faults faults;
   std::unique_ptr<RigServer> server;
 };
-
-// E1.31 data packet: universe 1, one slot. The fields are explained in sacn/sacn_receiver_test.cpp.
-Bytes sacn_one_slot(std::uint8_t sequence, std::uint8_t level) {
-  Bytes packet = {0x00, 0x10, 0x00, 0x00, 'A', 'S', 'C', '-', 'E',  '1',  '.', '1', '7', 0, 0,
-                  0,    0x70, 0x6f, 0,    0,   0,   4,   1,   2,    3,    4,   5,   6,   7, 8,
-                  9,    10,   11,   12,   13,  14,  15,  16,  0x70, 0x59, 0,   0,   0,   2};
-  packet.resize(108, 0);
-  for (const std::uint8_t byte : Bytes{100, 0, 0, sequence, 0, 0, 1, 0x70, 0x0c, 2, 0xa1, 0, 0, 0, 1, 0, 2, 0, level})
-    packet.push_back(byte);
-  return packet;
-}
 
 Bytes artdmx_two_slots(std::uint8_t level) {
   return {'A', 'r', 't', '-', 'N', 'e', 't', 0, 0, 0x50, 0, 14, 0, 0, 1, 0, 0, 2, level, 0};

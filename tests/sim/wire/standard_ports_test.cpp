@@ -11,6 +11,7 @@
 #include "sim/wire/dmx_endpoint.h"
 #include "sim/wire/rig_server.h"
 #include "tests/sim/tiny_rig.h"
+#include "tests/sim/wire/sacn_one_slot.h"
 
 namespace luxrig::sim {
 namespace {
@@ -131,28 +132,17 @@ struct AmongOthers {
   std::unique_ptr<RigServer> server;
 };
 
-// E1.31 data packet: universe 1, one slot, as in rig_server_test.cpp.
-Bytes sacn_slot(std::uint8_t sequence, std::uint8_t level) {
-  Bytes packet = {0x00, 0x10, 0x00, 0x00, 'A', 'S', 'C', '-', 'E',  '1',  '.', '1', '7', 0, 0,
-                  0,    0x70, 0x6f, 0,    0,   0,   4,   1,   2,    3,    4,   5,   6,   7, 8,
-                  9,    10,   11,   12,   13,  14,  15,  16,  0x70, 0x59, 0,   0,   0,   2};
-  packet.resize(108, 0);
-  for (const std::uint8_t byte : Bytes{100, 0, 0, sequence, 0, 0, 1, 0x70, 0x0c, 2, 0xa1, 0, 0, 0, 1, 0, 2, 0, level})
-    packet.push_back(byte);
-  return packet;
-}
-
 const Bytes kArtPoll = {'A', 'r', 't', '-', 'N', 'e', 't', 0, 0, 0x20, 0, 14, 2, 0};
 constexpr std::uint32_t kLoopbackBroadcast = 0x7fffffff;
 
 TEST(AmongOthers, MulticastOfItsUniverseReachesAFixture) {
   AmongOthers served("sacn");
   const Sender desk;
-  desk.send(sacn_group(1), served.port(), sacn_slot(0, 255));
+  desk.send(sacn_group(1), served.port(), sacn_one_slot(0, 255));
   served.serve(at_s(0.1));
   served.serve_only(at_s(0.2));
   EXPECT_EQ(served.world->drives()[0], 1);
-  desk.send(kLoopback, served.port(), sacn_slot(1, 51));
+  desk.send(kLoopback, served.port(), sacn_one_slot(1, 51));
   served.serve(at_s(0.3));
   served.serve_only(at_s(0.4));
   EXPECT_DOUBLE_EQ(served.world->drives()[0], 0.2) << "unicast as well";
@@ -168,7 +158,7 @@ TEST(AmongOthers, AfterTheFaultDeadMulticastReachesItAgain) {
   served.faults.clear();
   served.serve_only(at_s(0.2));
   EXPECT_EQ(served.server->descriptors().size(), sockets);
-  Sender().send(sacn_group(1), port, sacn_slot(0, 255));
+  Sender().send(sacn_group(1), port, sacn_one_slot(0, 255));
   served.serve(at_s(0.3));
   served.serve_only(at_s(0.4));
   EXPECT_EQ(served.world->drives()[0], 1);
@@ -212,7 +202,7 @@ TEST(AmongOthers, OnAllAddressesAPacketArrivesOnce) {
   AmongOthers served("sacn", kAnyAddress);
   const Sender desk;
   // Were multicast heard twice, the second copy would be out of order, and the world would not show it. So count.
-  desk.send(sacn_group(1), served.port(), sacn_slot(0, 255));
+  desk.send(sacn_group(1), served.port(), sacn_one_slot(0, 255));
   std::vector<pollfd> waiting;
   for (const int descriptor : served.server->descriptors()) waiting.push_back({descriptor, POLLIN, 0});
   ASSERT_EQ(::poll(waiting.data(), waiting.size(), 5000), 1);
