@@ -413,9 +413,10 @@ class Show {
   void replay() {
     const Time at = replay_time();
     std::vector<std::size_t> over;
-    for (auto& [e, replay] : replays_) {
+    for (auto& entry : replays_) {
+      Replay& replay = entry.second;
       if (replay.is_over(at)) {
-        over.push_back(e);
+        over.push_back(entry.first);
         continue;
       }
       venue_.in_room([&](sim::World& world) {
