@@ -25,6 +25,8 @@ constexpr double kMeteredWeight = 30;  ///< a metered goal comes before unmetere
 constexpr double kCaution = 0.5;
 /// Slightly above 1, so that rounding does not call for a second cut.
 constexpr double kAbove = 1 + 1e-12;
+/// A limit that binds may leave this share unused; more is worth another solve.
+constexpr double kRoomLeft = 0.005;
 
 /// Where the lights of `set` alone exceed a limit, those in `dims` all dim by the same share. If that does not suffice,
 /// the brightest at that point go off.
@@ -173,9 +175,9 @@ Correction GainEstimator::correct(std::span<const double> present, Time now, For
   Correction correction;
   correction.why.resize(points_.size());
   VectorXd level = problem.near_level + set;
-  // Limits hold for the worst case, which depends on the new levels: solve, check, tighten, solve again.
+  // Limits hold for the worst case, which depends on the new levels: solve, check, set anew, solve again.
   for (int round = 0; round < kLimitRounds; ++round) {
-    bool over = round == 0;
+    bool again = round == 0;
     VectorXd max_lx = problem.max_lx;
     for (Index i = 0; i < points; ++i) {
       const auto& limit_lx = points_[static_cast<std::size_t>(i)].max_lx;
@@ -184,10 +186,11 @@ Correction GainEstimator::correct(std::span<const double> present, Time now, For
       const double day_lx = max_without_fixtures(row, now), room = std::max(0.0, *limit_lx - day_lx);
       const double lux = lux_per_level.row(i).dot(level);
       const double most = max_lux(row, vector_of(list_of(per_light * level)), now) - day_lx;
-      over = over || most > room;
+      const bool binds = round > 0 && daylight_lx[i] + lux > (1 - kRoomLeft) * problem.max_lx[i];
+      again = again || most > room || (binds && most < (1 - kRoomLeft) * room);
       max_lx[i] = daylight_lx[i] + (lux > 0 && most > 0 ? room * std::min(1.0, lux / most) : room / local_);
     }
-    if (!over) break;
+    if (!again) break;
     problem.max_lx = std::move(max_lx);
     keep_within(problem.max_lx, daylight_lx, lux_per_level, held, set);
     problem.fixed_lx.head(points) = daylight_lx + lux_per_level * set;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "core/estimation/gain_estimator.h"
@@ -32,24 +33,28 @@ double GainEstimator::max_lux(const Row& row, const VectorXd& level, Time now) c
   // max Σ A_j w_j over lower ≤ A ≤ upper, A · (levels of the reading) ≤ the true value at most: a fractional knapsack,
   // filled by best w_j per level. w_j: level, times the most that the dimmer's true curve may add on the way there.
   const Index n = level.size();
-  VectorXd lower(n), upper(n), w(n);
+  const double tolerance = std::min(0.9, luxmeters_[e.luxmeter].tolerance);
+  VectorXd lower(n), upper(n), w(n), worth(n);
   double least = 0;
   for (Index j = 0; j < n; ++j) {
     const double m = row.lux_per_level[j], x = row.factor[j], sd = row.factor_error[j];
-    const double most = over ? gain_max_ * local_ : std::min(gain_max_ * local_, x + 3 * sd);
+    // What is learned of lamps is what the meter shows of them. If it shows too little by its tolerance, then of all.
+    const double most = over ? gain_max_ * local_ : std::min(gain_max_ * local_, (x + 3 * sd) / (1 - tolerance));
     upper[j] = m * most + (m > 0 ? 0 : 3 * row.standard_error[j] * gain_max_);
     lower[j] = std::min(upper[j], m * std::max(gain_min_ / local_, x - 3 * sd));
     w[j] = level[j] *
            std::exp(e.level[j] > 0 && level[j] > 0 ? kCurveError * std::abs(std::log(level[j] / e.level[j])) : 0);
+    // A ratio, not products compared: with a lamp that was and is dark, those would be no order.
+    worth[j] = e.level[j] > 0 ? w[j] / e.level[j] : w[j] > 0 ? std::numeric_limits<double>::infinity() : 0;
     least += lower[j] * e.level[j];
   }
-  const double truth = e.lux / (1 - std::min(0.9, luxmeters_[e.luxmeter].tolerance)) *
-                       (1 + 2 * kRepeatability + kDriftPerMinute * minutes_between(e.taken, now));
+  const double truth =
+      e.lux / (1 - tolerance) * (1 + 2 * kRepeatability + kDriftPerMinute * minutes_between(e.taken, now));
   if (least > truth) lower *= truth / least;
   double left = std::max(0.0, truth - least);
   std::vector<Index> order(static_cast<std::size_t>(n));
   std::iota(order.begin(), order.end(), Index{0});
-  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return w[a] * e.level[b] > w[b] * e.level[a]; });
+  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return worth[a] > worth[b]; });
   double most = lower.dot(w);
   for (const Index j : order) {
     const double room = upper[j] - lower[j];

@@ -7,6 +7,9 @@
 #include <cstdio>
 #include <functional>
 #include <limits>
+#include <numeric>
+#include <optional>
+#include <random>
 
 #include "core/output/output_program.h"
 #include "tests/core/estimation/gain_estimator_fixture.h"
@@ -140,6 +143,23 @@ TEST(GainEstimator, RecognisesAStuckMeterWhileTheLightCreeps) {
   EXPECT_GE(believed, 4);  // up to 1 % of change could be noise
   EXPECT_LE(believed, 7);
   EXPECT_FALSE(estimator.confirmed(0));
+}
+
+// A meter that sees one lamp alone shows how much that gives, and may be off by its tolerance all the same.
+TEST(GainEstimator, ALimitHoldsForAMetersToleranceWithASingleLampToo) {
+  World world(2);
+  world.rig.fixtures.resize(1);
+  world.model.point_lux_per_level = world.model.point_lux_per_level.leftCols(1).eval();
+  world.model.meter_lux_per_level = world.model.meter_lux_per_level.leftCols(1).eval();
+  GainEstimator estimator(world.rig, world.model);
+  const std::vector<double> level = {0.4};
+  const double lux = 0.9 * 0.4 * world.model.meter_lux_per_level(0, 0);
+  for (int k = 0; k < 6; ++k) {
+    const LuxReading reading{0, lux * (1 + 1e-4 * k), at_s(k)};
+    estimator.shows(reading, level);
+    ASSERT_TRUE(estimator.update(at_s(k), std::span(&reading, 1), level).front().believed);
+  }
+  EXPECT_GE(estimator.max_lux_at_point(0, level, at_s(5)), lux / (1 - kTolerance));
 }
 
 // Somebody stands in the light of a limited point while the lamps converge, then leaves: the meter was right both times.
@@ -312,6 +332,42 @@ TEST(GainEstimator, BoundsLightFromAboveAndTightlyWhereMeasured) {
     EXPECT_GE(after, truth);
     EXPECT_LE(after, truth * 1.11);
     EXPECT_GT(before, after);
+  }
+}
+
+// Lamps that were and stay dark included: once they disturbed the order in which lamps take what a reading leaves.
+TEST(GainEstimator, ABoundDoesNotDependOnTheOrderOfLamps) {
+  for (unsigned seed = 0; seed < 100; ++seed) {
+    World world(seed);
+    std::uniform_real_distribution<double> uniform;
+    std::vector<double> to = world.plan;
+    for (std::size_t j = 0; j < to.size(); ++j) {
+      if (uniform(world.random) < 0.4) world.plan[j] = 0;
+      to[j] = uniform(world.random) < 0.5 ? world.plan[j] : uniform(world.random);
+    }
+    const std::vector<LuxReading> readings = world.readings(world.plan, at_s(1));
+    std::vector<Index> order(to.size());
+    std::iota(order.begin(), order.end(), Index{0});
+    std::optional<double> bound;
+    for (int k = 0; k < 3; ++k) {
+      LightModel model = world.model;
+      model.point_lux_per_level = world.model.point_lux_per_level(Eigen::indexing::all, order).eval();
+      model.meter_lux_per_level = world.model.meter_lux_per_level(Eigen::indexing::all, order).eval();
+      std::vector<double> from, there;
+      for (const Index j : order) {
+        from.push_back(world.plan[static_cast<std::size_t>(j)]);
+        there.push_back(to[static_cast<std::size_t>(j)]);
+      }
+      GainEstimator estimator(world.rig, model);
+      estimator.update(at_s(1), readings, from);
+      const double lux = estimator.max_lux_at_point(0, there, at_s(1));
+      EXPECT_GE(lux, world.true_lux(to)[0]) << seed;
+      if (bound) {
+        EXPECT_NEAR(lux, *bound, 1e-6 * *bound) << seed;
+      }
+      bound = lux;
+      std::shuffle(order.begin(), order.end(), world.random);
+    }
   }
 }
 
