@@ -459,6 +459,9 @@ class Show {
               !std::holds_alternative<ModbusPatch>(fixture.patch))
             rules_.fixture_is_deaf(seconds(), on);
         }
+      const bool bus =
+          std::any_of(rig_.buses.begin(), rig_.buses.end(), [&](const Bus& b) { return b.name == device; });
+      if (bus && event.fault == sim::FaultKind::dead) rules_.lamps_are_stuck(seconds(), on);
       for (std::size_t m = 0; m < rig_.luxmeters.size(); ++m) {
         const bool itself = rig_.luxmeters[m].name == device;
         if (makes_a_meter_lie(event.fault)) {

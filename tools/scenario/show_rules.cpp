@@ -86,18 +86,27 @@ void ShowRules::heads_may_turn(double at_s) { turning_s_ = at_s; }
 
 void ShowRules::blackout(double at_s, bool on) {
   disturbed(at_s);
-  // In the dark no meter teaches anything: what a wrong one taught before is corrected after it.
-  if (!on && dark_) {
-    const auto again = [&](double& changed_s) {
-      if (changed_s > *dark_since_s_ - kHearsAgain_s) changed_s = at_s;
-    };
-    for (auto& [meter, lie] : lies_) again(lie.changed_s);
-    if (unmodelled_s_) again(*unmodelled_s_);
-  }
+  if (on != dark_) nothing_corrects(at_s, on);  // in the dark no meter teaches anything
   if (on && !dark_) dark_since_s_ = at_s;
   blackout_s_ = at_s;
   dark_ = on;
   dark_joints_.clear();
+}
+
+void ShowRules::lamps_are_stuck(double at_s, bool stuck) { nothing_corrects(at_s, stuck); }
+
+void ShowRules::nothing_corrects(double at_s, bool on) {
+  if (on && uncorrected_++ == 0) uncorrected_s_ = at_s;
+  if (on || --uncorrected_ > 0) return;
+  const auto again = [&](double& changed_s) {
+    if (changed_s > uncorrected_s_ - kHearsAgain_s) changed_s = at_s;
+  };
+  for (auto& [meter, lie] : lies_) again(lie.changed_s);
+  if (unmodelled_s_) again(*unmodelled_s_);
+}
+
+bool ShowRules::still_uncorrected(double changed_s, double at_s, double for_s) const {
+  return at_s - changed_s < for_s || (uncorrected_ > 0 && changed_s > uncorrected_s_ - kHearsAgain_s);
 }
 
 void ShowRules::held_by_hand(double at_s, std::size_t fixture, double level, std::optional<double> for_s) {
@@ -135,7 +144,7 @@ void ShowRules::meter_lies(double at_s, std::size_t luxmeter, bool lies) {
 bool ShowRules::lied_to_lately(std::size_t point, double at_s) const {
   return std::any_of(lies_.begin(), lies_.end(), [&](const auto& of) {
     return rig_.luxmeters[of.first].point == point &&
-           (of.second.reasons > 0 || at_s - of.second.changed_s < kHearsAgain_s);
+           (of.second.reasons > 0 || still_uncorrected(of.second.changed_s, at_s, kHearsAgain_s));
   });
 }
 
@@ -155,7 +164,7 @@ void ShowRules::meter_is_mute(double at_s, bool mute) {
 }
 
 bool ShowRules::unmodelled_lately(double at_s, double for_s) const {
-  return unmodelled_ || (unmodelled_s_ && (mute_ > 0 || at_s - *unmodelled_s_ < for_s));
+  return unmodelled_ || (unmodelled_s_ && (mute_ > 0 || still_uncorrected(*unmodelled_s_, at_s, for_s)));
 }
 
 void ShowRules::fixture_is_deaf(double at_s, bool deaf) {
@@ -290,7 +299,8 @@ void ShowRules::look_at_meters(double at_s, const Instant& instant) {
     const double allowed =
         std::max(lie.honest_lx, goal_or_limit_lx(rig_, *point, *instant.status)) / least_gain * kOffModel + 1;
     const bool by_hand_lately = !hands_.empty() || !bypassed_.empty() || desk_lately(at_s) ||
-                                (disturbed_s_ && at_s - *disturbed_s_ < kHandWithin_s);
+                                (disturbed_s_ && at_s - *disturbed_s_ < kHandWithin_s) ||
+                                (hand_over_s_ && at_s - *hand_over_s_ < kHandWithin_s);
     if (!unmodelled_ && lux > allowed && !by_hand_lately)
       broken(wrong_meter, at_s,
              fmt::format("{} gets {:.1f} lx while its luxmeter \"{}\" is wrong; the model allows {:.1f}",
@@ -347,6 +357,7 @@ void ShowRules::look_at_hands(double at_s, const Instant& instant) {
   for (auto hand = hands_.begin(); hand != hands_.end();) {
     if (hand->second.until_s && at_s >= *hand->second.until_s - kTick_s) {
       hand = hands_.erase(hand);
+      hand_over_s_ = at_s;
       continue;
     }
     const auto& [f, held] = *hand;

@@ -60,6 +60,8 @@ class ShowRules {
   void light_is_unmodelled(double at_s, bool unmodelled);
   /// A meter that cannot be read: what a person's shade taught stays, until it can.
   void meter_is_mute(double at_s, bool mute);
+  /// A bus that is dead, or no longer: its lamps stay as they are, whatever a wrong meter taught before.
+  void lamps_are_stuck(double at_s, bool stuck);
   /// A fixture that cannot answer does not get what it is sent: nobody can know its light.
   void fixture_is_deaf(double at_s, bool deaf);
   void daemon_gone(double at_s, const ShowStatus& last);
@@ -79,6 +81,10 @@ class ShowRules {
  private:
   enum Rule { limits, jumps, waits, survives, wrong_meter, met, dark, by_hand, keep_out, safe_at_end, rules };
   void broken(Rule rule, double at_s, std::string found);
+  /// Nothing that a wrong meter taught is corrected from now on, or is again, for one reason more or less.
+  void nothing_corrects(double at_s, bool on);
+  /// Of a lie, or of light that is not modelled, which changed then.
+  [[nodiscard]] bool still_uncorrected(double changed_s, double at_s, double for_s) const;
   /// A desk shares control, or has until a moment ago.
   [[nodiscard]] bool desk_lately(double at_s) const;
   [[nodiscard]] bool deaf_lately(double at_s) const;
@@ -105,7 +111,9 @@ class ShowRules {
   std::optional<double> disturbed_s_, dark_since_s_, blackout_s_, unmodelled_s_;
   bool unmodelled_ = false, dark_ = false, desk_ = false;
   int deaf_ = 0, mute_ = 0;
-  std::optional<double> deaf_s_, turning_s_, desk_s_, by_hand_s_, safe_look_s_;
+  std::optional<double> deaf_s_, turning_s_, desk_s_, by_hand_s_, hand_over_s_, safe_look_s_;
+  int uncorrected_ = 0;  ///< reasons why nothing is corrected
+  double uncorrected_s_ = 0;
   std::vector<double> before_;           ///< levels of the last instant
   double before_s_ = 0;                  ///< that instant
   std::vector<double> last_sent_s_;      ///< per bus

@@ -249,6 +249,25 @@ TEST_F(RulesTest, AMeterThatLiesExcusesNoLimitElsewhere) {
   EXPECT_FALSE(judged[0].held) << "its own meter has been right for a long time";
 }
 
+// What a wrong meter drove up stays while no lamp answers, and is corrected after that.
+TEST_F(RulesTest, WhileABusIsDeadALieIsNotCorrected) {
+  const std::size_t point = *show.rig.luxmeters[0].point;
+  show.rig.points[point].max_lx = 50;
+  show.now.lux[point] = 60;
+  ShowRules limited(show.rig), free(show.rig);
+  for (ShowRules* one : {&limited, &free}) one->meter_lies(1, 0, true);
+  limited.lamps_are_stuck(5, true);
+  for (ShowRules* one : {&limited, &free}) one->meter_lies(20, 0, false);
+  for (ShowRules* one : {&limited, &free}) one->look(40, show.now, {});
+  EXPECT_FALSE(free.end()[0].held);
+  EXPECT_TRUE(limited.end()[0].held);
+  limited.lamps_are_stuck(50, false);
+  limited.look(64, show.now, {});
+  EXPECT_TRUE(limited.end()[0].held) << "a sample corrects it";
+  limited.look(66, show.now, {});
+  EXPECT_FALSE(limited.end()[0].held);
+}
+
 TEST_F(RulesTest, LightDrivenUpByAWrongMeterBreaksTheFifth) {
   show.rig.points[4].goal_lx = 100;
   show.status.points[4].goal_lx = 100;
