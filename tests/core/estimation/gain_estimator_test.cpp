@@ -386,6 +386,27 @@ TEST(GainEstimator, HandlesARigWithoutMetersPointsOrFixtures) {
 }
 
 // A meter sees no colour: it only asks for more or less of the present light.
+// The key cannot bring "brow" to its goal. The fill, which lights "cheek", adds little there: a plan would leave it off.
+TEST(GainEstimator, NoMeteredGoalDrawsAnUnmeteredOneFarAway) {
+  Rig rig;
+  rig.fixtures.resize(2);
+  rig.luxmeters.resize(1);
+  rig.points.resize(2);
+  rig.luxmeters[0].point = 0;
+  rig.points[0].goal_lx = 930;
+  rig.points[1].goal_lx = 210;
+  LightModel model;
+  model.point_lux_per_level = MatrixXd{{963, 59}, {83, 606}};
+  model.meter_lux_per_level = MatrixXd{{963, 59}};
+  GainEstimator estimator(rig, model);
+  std::vector<double> level = {1, 0.2};
+  const LuxReading reading{0, 790, at_s(1)};
+  ASSERT_TRUE(estimator.update(at_s(1), std::span(&reading, 1), level).front().believed);
+  for (int round = 0; round < 4; ++round) level = estimator.correct(level, at_s(2)).level;
+  EXPECT_NEAR(level[0], 1, 1e-6);
+  EXPECT_NEAR(estimator.at_point(1, level).lux, 210, 2.5 * estimator.at_point(1, level).standard_error_lx);
+}
+
 TEST(GainEstimator, CorrectsTheEmittersOfAHousingTogether) {
   Rig rig;
   rig.fixtures.resize(4);
