@@ -139,6 +139,8 @@ bool GainEstimator::confirmed(std::size_t point) const {
 }
 
 double GainEstimator::upper_gain(std::size_t fixture) const {
+  for (std::size_t i = 0; i < over_.size(); ++i)
+    if (over_[i] && meter_(static_cast<Index>(i), static_cast<Index>(fixture)) > 0) return gain_max_;
   return std::min(gain_max_, gain(fixture) + 3 * gain_standard_error(fixture));
 }
 

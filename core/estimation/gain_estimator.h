@@ -151,7 +151,8 @@ class GainEstimator {
   [[nodiscard]] double gain_standard_error(std::size_t fixture) const {
     return gain_error_[static_cast<Eigen::Index>(fixture)];
   }
-  /// Upper bound of the fixture's gain: estimate + 3 standard errors, at most gain_max.
+  /// Upper bound of the fixture's gain: estimate + 3 standard errors, at most gain_max. gain_max if a meter that it
+  /// lights shows more than what it taught before: one of both was wrong.
   [[nodiscard]] double upper_gain(std::size_t fixture) const;
 
   /// A number that changes with everything learned: predictions at the same levels differ only with it.

@@ -184,8 +184,10 @@ TEST(GainEstimator, KeepsALimitByAHigherReadingThatItDoesNotBelieve) {
     if (!believed || world.true_lux(level)[0] <= max_lx) continue;  // too dark to be believed, or another limit kept it
     ++tried;
     const double gain = estimator.gain(0);
+    EXPECT_LT(estimator.upper_gain(0), world.rig.control.gain_max);
     EXPECT_FALSE(show(5, 1).believed) << seed;
     EXPECT_NEAR(estimator.gain(0), gain, 1e-4) << "nothing is learned from it";
+    EXPECT_EQ(estimator.upper_gain(0), world.rig.control.gain_max) << "nor do other limits rely on what was learned";
     EXPECT_GT(estimator.max_lux_at_point(0, level, at_s(5)), max_lx) << seed;
     level = estimator.correct(level, at_s(5)).level;
     EXPECT_LE(world.true_lux(level)[0], max_lx) << seed;
