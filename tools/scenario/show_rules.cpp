@@ -78,7 +78,9 @@ bool ShowRules::disturbed_lately(double at_s) const {
   return disturbed_s_ && at_s - *disturbed_s_ <= kDisturbance_s + slack_.time_s;
 }
 
-bool ShowRules::deaf_lately(double at_s) const { return deaf_ > 0 || (deaf_s_ && at_s - *deaf_s_ < kHearsAgain_s); }
+bool ShowRules::deaf_lately(double at_s) const {
+  return deaf_ > 0 || (deaf_s_ && (at_s - *deaf_s_ < kHearsAgain_s || meters_pause_.keeps(*deaf_s_)));
+}
 
 bool ShowRules::desk_lately(double at_s) const { return desk_ || (desk_s_ && at_s - *desk_s_ < kAfterDesk_s); }
 
@@ -86,27 +88,30 @@ void ShowRules::heads_may_turn(double at_s) { turning_s_ = at_s; }
 
 void ShowRules::blackout(double at_s, bool on) {
   disturbed(at_s);
-  if (on != dark_) nothing_corrects(at_s, on);  // in the dark no meter teaches anything
+  if (on != dark_) pause(lamps_pause_, at_s, on);  // in the dark no meter teaches anything
   if (on && !dark_) dark_since_s_ = at_s;
   blackout_s_ = at_s;
   dark_ = on;
   dark_joints_.clear();
 }
 
-void ShowRules::lamps_are_stuck(double at_s, bool stuck) { nothing_corrects(at_s, stuck); }
+void ShowRules::lamps_are_stuck(double at_s, bool stuck) { pause(lamps_pause_, at_s, stuck); }
 
-void ShowRules::nothing_corrects(double at_s, bool on) {
-  if (on && uncorrected_++ == 0) uncorrected_s_ = at_s;
-  if (on || --uncorrected_ > 0) return;
+bool ShowRules::Pause::keeps(double changed_s) const { return reasons > 0 && changed_s > since_s - kHearsAgain_s; }
+
+void ShowRules::pause(Pause& pause, double at_s, bool on) {
+  if (on && pause.reasons++ == 0) pause.since_s = at_s;
+  if (on || pause.reasons > 1) {
+    if (!on) --pause.reasons;
+    return;
+  }
   const auto again = [&](double& changed_s) {
-    if (changed_s > uncorrected_s_ - kHearsAgain_s) changed_s = at_s;
+    if (pause.keeps(changed_s)) changed_s = at_s;
   };
   for (auto& [meter, lie] : lies_) again(lie.changed_s);
   if (unmodelled_s_) again(*unmodelled_s_);
-}
-
-bool ShowRules::still_uncorrected(double changed_s, double at_s, double for_s) const {
-  return at_s - changed_s < for_s || (uncorrected_ > 0 && changed_s > uncorrected_s_ - kHearsAgain_s);
+  if (deaf_s_) again(*deaf_s_);
+  pause.reasons = 0;
 }
 
 void ShowRules::held_by_hand(double at_s, std::size_t fixture, double level, std::optional<double> for_s) {
@@ -144,7 +149,8 @@ void ShowRules::meter_lies(double at_s, std::size_t luxmeter, bool lies) {
 bool ShowRules::lied_to_lately(std::size_t point, double at_s) const {
   return std::any_of(lies_.begin(), lies_.end(), [&](const auto& of) {
     return rig_.luxmeters[of.first].point == point &&
-           (of.second.reasons > 0 || still_uncorrected(of.second.changed_s, at_s, kHearsAgain_s));
+           (of.second.reasons > 0 || at_s - of.second.changed_s < kHearsAgain_s ||
+            lamps_pause_.keeps(of.second.changed_s));
   });
 }
 
@@ -158,13 +164,11 @@ void ShowRules::light_is_unmodelled(double at_s, bool unmodelled) {
   unmodelled_s_ = at_s;
 }
 
-void ShowRules::meter_is_mute(double at_s, bool mute) {
-  mute_ += mute ? 1 : -1;
-  if (unmodelled_s_ && mute_ == 0) unmodelled_s_ = at_s;
-}
+void ShowRules::meter_is_mute(double at_s, bool mute) { pause(meters_pause_, at_s, mute); }
 
 bool ShowRules::unmodelled_lately(double at_s, double for_s) const {
-  return unmodelled_ || (unmodelled_s_ && (mute_ > 0 || still_uncorrected(*unmodelled_s_, at_s, for_s)));
+  return unmodelled_ || (unmodelled_s_ && (at_s - *unmodelled_s_ < for_s || lamps_pause_.keeps(*unmodelled_s_) ||
+                                           meters_pause_.keeps(*unmodelled_s_)));
 }
 
 void ShowRules::fixture_is_deaf(double at_s, bool deaf) {

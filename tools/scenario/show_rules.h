@@ -81,10 +81,15 @@ class ShowRules {
  private:
   enum Rule { limits, jumps, waits, survives, wrong_meter, met, dark, by_hand, keep_out, safe_at_end, rules };
   void broken(Rule rule, double at_s, std::string found);
-  /// Nothing that a wrong meter taught is corrected from now on, or is again, for one reason more or less.
-  void nothing_corrects(double at_s, bool on);
-  /// Of a lie, or of light that is not modelled, which changed then.
-  [[nodiscard]] bool still_uncorrected(double changed_s, double at_s, double for_s) const;
+  /// A time in which what is wrong is not corrected, for one reason or more.
+  struct Pause {
+    int reasons = 0;
+    double since_s = 0;
+    /// Whether what changed then is still as it was.
+    [[nodiscard]] bool keeps(double changed_s) const;
+  };
+  /// One reason more or less. When the last goes, what it kept counts as changed now.
+  void pause(Pause& pause, double at_s, bool on);
   /// A desk shares control, or has until a moment ago.
   [[nodiscard]] bool desk_lately(double at_s) const;
   [[nodiscard]] bool deaf_lately(double at_s) const;
@@ -110,10 +115,10 @@ class ShowRules {
   double max_rate_per_s_ = 0;  ///< for what is seen later
   std::optional<double> disturbed_s_, dark_since_s_, blackout_s_, unmodelled_s_;
   bool unmodelled_ = false, dark_ = false, desk_ = false;
-  int deaf_ = 0, mute_ = 0;
+  int deaf_ = 0;
   std::optional<double> deaf_s_, turning_s_, desk_s_, by_hand_s_, hand_over_s_, safe_look_s_;
-  int uncorrected_ = 0;  ///< reasons why nothing is corrected
-  double uncorrected_s_ = 0;
+  Pause lamps_pause_;                    ///< dark, or a bus is dead: nothing that was taught is corrected
+  Pause meters_pause_;                   ///< a meter is mute
   std::vector<double> before_;           ///< levels of the last instant
   double before_s_ = 0;                  ///< that instant
   std::vector<double> last_sent_s_;      ///< per bus

@@ -268,6 +268,25 @@ TEST_F(RulesTest, WhileABusIsDeadALieIsNotCorrected) {
   EXPECT_FALSE(limited.end()[0].held);
 }
 
+// What a deaf lamp taught is corrected by the next sample, and there is none while meters are mute.
+TEST_F(RulesTest, WhileMetersAreMuteADeafLampsLessonStays) {
+  const std::size_t point = *show.rig.luxmeters[0].point;
+  show.rig.points[point].max_lx = 50;
+  show.now.lux[point] = 55;
+  ShowRules limited(show.rig), late(show.rig);
+  for (ShowRules* one : {&limited, &late}) one->fixture_is_deaf(1, true);
+  for (ShowRules* one : {&limited, &late}) one->fixture_is_deaf(14, false);
+  limited.meter_is_mute(11, true);
+  late.meter_is_mute(30, true);
+  limited.look(40, show.now, {});
+  late.look(40, show.now, {});
+  EXPECT_TRUE(limited.end()[0].held);
+  EXPECT_FALSE(late.end()[0].held) << "there was time for a sample";
+  limited.meter_is_mute(50, false);
+  limited.look(66, show.now, {});
+  EXPECT_FALSE(limited.end()[0].held);
+}
+
 TEST_F(RulesTest, LightDrivenUpByAWrongMeterBreaksTheFifth) {
   show.rig.points[4].goal_lx = 100;
   show.status.points[4].goal_lx = 100;
