@@ -24,9 +24,9 @@ constexpr double kMeteredWeight = 30;  ///< a metered goal comes before unmetere
 /// it, such goals move levels so far in one round that the next reading surprises (of 500 simulated rigs, five instead
 /// of one or none missed a metered goal by more than 2 % after three rounds).
 constexpr double kCaution = 0.5;
-/// Metered goals may draw an unmetered one away from the compromise only as far as nobody can know: so many standard
-/// errors of the model's light there. Beyond that it counts like them.
-constexpr double kDrawnAway = 2;
+/// A metered goal that is missed by this share all the same may draw no unmetered one away from the compromise by more
+/// than so many standard errors of the model's light there: then it no longer comes first.
+constexpr double kMissed = 0.05, kDrawnAway = 2;
 /// Slightly above 1, so that rounding does not call for a second cut.
 constexpr double kAbove = 1 + 1e-12;
 /// A limit that binds may leave this share unused; more is worth another solve.
@@ -179,21 +179,36 @@ Correction GainEstimator::correct(std::span<const double> present, Time now, For
   Correction correction;
   correction.why.resize(points_.size());
   VectorXd level = problem.near_level + set;
-  // The compromise in which no goal comes first is what a plan would ask for.
-  std::optional<VectorXd> compromise;
-  const auto drawn_away = [&](Index i, const VectorXd& at) {
-    const Row& row = rows[static_cast<std::size_t>(i)];
-    if (row.luxmeter || !std::isfinite(problem.goal_lx[i]) || problem.weight[i] != asked.weight[i]) return false;
-    const auto lux_of = [&](const VectorXd& of) { return daylight_lx[i] + lux_per_level.row(i).dot(of); };
-    const double error_lx = kDrawnAway * predict(row, vector_of(list_of(per_light * at))).standard_error_lx;
-    if (std::abs(lux_of(at) - problem.goal_lx[i]) <= error_lx) return false;
+  const auto lux_at = [&](Index i, const VectorXd& of) { return daylight_lx[i] + lux_per_level.row(i).dot(of); };
+  const auto is_unmetered_goal = [&](Index i) {
+    return !rows[static_cast<std::size_t>(i)].luxmeter && std::isfinite(problem.goal_lx[i]);
+  };
+  std::optional<VectorXd> compromise;  // in which no goal comes first: what a plan would ask for
+  const auto is_drawn_away = [&](Index i) {
+    if (!is_unmetered_goal(i)) return false;
+    const VectorXd at = vector_of(list_of(per_light * level));
+    const double error_lx = kDrawnAway * predict(rows[static_cast<std::size_t>(i)], at).standard_error_lx;
+    if (std::abs(lux_at(i, level) - problem.goal_lx[i]) <= error_lx) return false;
     if (!compromise) {
       EmittanceProblem equal = problem;
       equal.weight.head(points) = asked.weight;
       const auto solution = solve_emittance(equal);
-      compromise = solution ? VectorXd(solution->level + set) : at;
+      compromise = solution ? VectorXd(solution->level + set) : level;
     }
-    return std::abs(lux_of(at) - lux_of(*compromise)) > error_lx;
+    return std::abs(lux_at(i, level) - lux_at(i, *compromise)) > error_lx;
+  };
+  /// Whether a metered goal lost its precedence.
+  const auto give_way = [&] {
+    std::vector<Index> missed;
+    for (Index i = 0; i < points; ++i)
+      if (rows[static_cast<std::size_t>(i)].luxmeter && problem.weight[i] > asked.weight[i] &&
+          std::abs(lux_at(i, level) - problem.goal_lx[i]) > kMissed * problem.goal_lx[i])
+        missed.push_back(i);
+    bool any = false;
+    for (Index i = 0; !missed.empty() && !any && i < points; ++i) any = is_drawn_away(i);
+    for (const Index i : missed)
+      if (any) problem.weight[i] = asked.weight[i];
+    return any;
   };
   // Limits hold for the worst case, which depends on the new levels: solve, check, set anew, solve again.
   VectorXd max_lx = problem.max_lx;
@@ -210,11 +225,7 @@ Correction GainEstimator::correct(std::span<const double> present, Time now, For
       again = again || most > room || (binds && most < (1 - kRoomLeft) * room);
       max_lx[i] = daylight_lx[i] + (lux > 0 && most > 0 ? room * std::min(1.0, lux / most) : room / local_);
     }
-    for (Index i = 0; round > 0 && i < points; ++i) {
-      if (!drawn_away(i, level)) continue;
-      problem.weight[i] = kMeteredWeight * asked.weight[i];
-      again = true;
-    }
+    if (round > 0 && give_way()) again = true;
     if (!again) break;
     problem.max_lx = max_lx;
     keep_within(problem.max_lx, daylight_lx, lux_per_level, held, set);
