@@ -1,9 +1,11 @@
 // The Modbus RTU driver against simulated units on a pseudo terminal, in real time: answers damaged by the line, an
 // adapter that is pulled out, products with register maps, a dead unit.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <map>
+#include <string>
 #include <thread>
 
 #include "core/rig/register_map/register_map.h"
@@ -109,21 +111,30 @@ TEST_P(LineFault, GivesNoWrongReadingAndClearsAsSoonAsItEnds) {
   line.far.faults().set("b", sim::FaultKind::lying, true, 0.5);
   line.far.faults().set("c", sim::FaultKind::lying, true, 3.0);
   line.run(0.6, 1.0);
-  const auto right = [&] {
+  // Answers have no number: one that the machine holds up beyond the timeout, and that has another unit's number, is
+  // that unit's as far as a driver can tell. The far end counts what was held up; nothing else excuses a wrong reading.
+  const auto no_wrong_reading = [&]() -> ::testing::AssertionResult {
+    std::uint64_t wrong = 0;
+    std::string first;
     for (const auto& [meter, seen] : line.readings) {
       const double wanted_lx = meter == 0 ? 100 : meter == 1 ? 50 : 300;
       for (const RealLine::Seen& each : seen) {
-        if (std::abs(each.lux - wanted_lx) > 0.5) return false;
+        if (std::abs(each.lux - wanted_lx) <= 0.5) continue;
+        if (wrong++ == 0)
+          first = fmt::format("meter {} read {:g} lx for {:g} lx at {:.3f} s", meter, each.lux, wanted_lx,
+                              to_seconds(each.when - at_ms(0)));
       }
     }
-    return true;
+    const std::uint64_t held_up = line.far.answers_held_up();
+    if (wrong <= held_up) return ::testing::AssertionSuccess();
+    return ::testing::AssertionFailure() << wrong << " wrong readings, " << held_up << " answers held up; " << first;
   };
   ASSERT_TRUE(line.all_at(1.0)) << line.health("the-bus").detail;
   line.readings.clear();
   const auto [fault, value] = GetParam();
   line.far.faults().set("the-bus", fault, true, value);
   line.run(1.5, 1.0);
-  EXPECT_TRUE(right()) << "while it lasted";
+  EXPECT_TRUE(no_wrong_reading()) << "while it lasted";
   EXPECT_LT(line.longest_cycle, 2 * line.driver->bounds().write + milliseconds(250));
   line.far.faults().set("the-bus", fault, false);
   const auto well = [&] {
@@ -132,7 +143,7 @@ TEST_P(LineFault, GivesNoWrongReadingAndClearsAsSoonAsItEnds) {
   };
   for (const Time end = line.now() + from_seconds(4.5); line.now() < end && !well();) line.cycle(1.0);
   line.run(0.4, 1.0);
-  EXPECT_TRUE(right()) << "afterwards";
+  EXPECT_TRUE(no_wrong_reading()) << "afterwards";
   for (const char* device : {"the-bus", "dimmer", "a", "b", "c"}) {
     EXPECT_EQ(line.health(device).life, Life::active) << device << ": " << line.health(device).detail;
   }
