@@ -132,10 +132,10 @@ void ShowRules::clock_stepped() {
 void ShowRules::bypassed(double at_s, const std::vector<std::string>& names, bool on) {
   disturbed(at_s);
   for (const std::string& name : names) {
-    if (on)
-      bypassed_.insert(name);
-    else
-      bypassed_.erase(name);
+    const bool changed = on ? bypassed_.insert(name).second : bypassed_.erase(name) > 0;
+    const bool lamp = std::any_of(rig_.fixtures.begin(), rig_.fixtures.end(),
+                                  [&](const Fixture& fixture) { return fixture.name == name; });
+    if (changed && lamp) pause(lamps_pause_, at_s, on);
   }
 }
 

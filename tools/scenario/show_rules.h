@@ -117,7 +117,7 @@ class ShowRules {
   bool unmodelled_ = false, dark_ = false, desk_ = false;
   int deaf_ = 0;
   std::optional<double> deaf_s_, turning_s_, desk_s_, by_hand_s_, hand_over_s_, safe_look_s_;
-  Pause lamps_pause_;                    ///< dark, or a bus is dead: nothing that was taught is corrected
+  Pause lamps_pause_;                    ///< dark, a bus is dead, a lamp is bypassed: what was taught is not corrected
   Pause meters_pause_;                   ///< a meter is mute
   std::vector<double> before_;           ///< levels of the last instant
   double before_s_ = 0;                  ///< that instant

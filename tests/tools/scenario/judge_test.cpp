@@ -268,6 +268,22 @@ TEST_F(RulesTest, WhileABusIsDeadALieIsNotCorrected) {
   EXPECT_FALSE(limited.end()[0].held);
 }
 
+// A lamp that a wrong meter drove up is bypassed, and comes back as it was.
+TEST_F(RulesTest, ABypassedLampIsNotCorrected) {
+  const std::size_t point = *show.rig.luxmeters[0].point;
+  show.rig.points[point].max_lx = 50;
+  ShowRules limited(show.rig);
+  limited.meter_lies(1, 0, true);
+  limited.bypassed(10, {show.rig.fixtures[0].name}, true);
+  limited.meter_lies(20, 0, false);
+  limited.bypassed(50, {show.rig.fixtures[0].name}, false);
+  show.now.lux[point] = 60;
+  limited.look(52, show.now, {});
+  EXPECT_TRUE(limited.end()[0].held);
+  limited.look(66, show.now, {});
+  EXPECT_FALSE(limited.end()[0].held);
+}
+
 // What a deaf lamp taught is corrected by the next sample, and there is none while meters are mute.
 TEST_F(RulesTest, WhileMetersAreMuteADeafLampsLessonStays) {
   const std::size_t point = *show.rig.luxmeters[0].point;
