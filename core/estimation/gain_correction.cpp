@@ -180,14 +180,11 @@ Correction GainEstimator::correct(std::span<const double> present, Time now, For
   correction.why.resize(points_.size());
   VectorXd level = problem.near_level + set;
   const auto lux_at = [&](Index i, const VectorXd& of) { return daylight_lx[i] + lux_per_level.row(i).dot(of); };
-  const auto is_unmetered_goal = [&](Index i) {
-    return !rows[static_cast<std::size_t>(i)].luxmeter && std::isfinite(problem.goal_lx[i]);
-  };
   std::optional<VectorXd> compromise;  // in which no goal comes first: what a plan would ask for
   const auto is_drawn_away = [&](Index i) {
-    if (!is_unmetered_goal(i)) return false;
-    const VectorXd at = vector_of(list_of(per_light * level));
-    const double error_lx = kDrawnAway * predict(rows[static_cast<std::size_t>(i)], at).standard_error_lx;
+    const Row& row = rows[static_cast<std::size_t>(i)];
+    if (row.luxmeter || !std::isfinite(problem.goal_lx[i])) return false;
+    const double error_lx = kDrawnAway * predict(row, vector_of(list_of(per_light * level))).standard_error_lx;
     if (std::abs(lux_at(i, level) - problem.goal_lx[i]) <= error_lx) return false;
     if (!compromise) {
       EmittanceProblem equal = problem;

@@ -100,18 +100,19 @@ void ShowRules::lamps_are_stuck(double at_s, bool stuck) { pause(lamps_pause_, a
 bool ShowRules::Pause::keeps(double changed_s) const { return reasons > 0 && changed_s > since_s - kHearsAgain_s; }
 
 void ShowRules::pause(Pause& pause, double at_s, bool on) {
-  if (on && pause.reasons++ == 0) pause.since_s = at_s;
-  if (on || pause.reasons > 1) {
-    if (!on) --pause.reasons;
+  if (on) {
+    if (pause.reasons++ == 0) pause.since_s = at_s;
     return;
   }
-  const auto again = [&](double& changed_s) {
-    if (pause.keeps(changed_s)) changed_s = at_s;
-  };
-  for (auto& [meter, lie] : lies_) again(lie.changed_s);
-  if (unmodelled_s_) again(*unmodelled_s_);
-  if (deaf_s_) again(*deaf_s_);
-  pause.reasons = 0;
+  if (pause.reasons == 1) {
+    const auto again = [&](double& changed_s) {
+      if (pause.keeps(changed_s)) changed_s = at_s;
+    };
+    for (auto& [meter, lie] : lies_) again(lie.changed_s);
+    if (unmodelled_s_) again(*unmodelled_s_);
+    if (deaf_s_) again(*deaf_s_);
+  }
+  --pause.reasons;
 }
 
 void ShowRules::held_by_hand(double at_s, std::size_t fixture, double level, std::optional<double> for_s) {
