@@ -209,32 +209,43 @@ void OutputProgram::switch_off_partial(std::span<double> level) const {
     if (switched[i] != 0 && level[i] < 1) level[i] = 0;
 }
 
+double OutputProgram::faded_level(std::size_t fixture, double share) const {
+  const bool on_or_off = is_on_or_off(switched, static_cast<Eigen::Index>(fixture));
+  const double wanted =
+      level_on_the_way(at_or_zero(from_level, fixture), at_or_zero(to_level, fixture), share, on_or_off);
+  const double most = at_or_zero(max_level, fixture);
+  return wanted > 0 && most > 0 ? std::min(wanted, std::min(most, 1.0)) : 0.0;
+}
+
 void OutputProgram::own_levels_at(Time now, std::span<double> level) const {
   const double share =
       done(now) ? 1.0
       : now <= start
           ? 0.0
           : fade_share(curve, static_cast<double>((now - start).count()) / static_cast<double>(duration.count()));
-  for (std::size_t i = 0; i < level.size(); ++i) {
-    const bool on_or_off = is_on_or_off(switched, static_cast<Eigen::Index>(i));
-    const double wanted = level_on_the_way(at_or_zero(from_level, i), at_or_zero(to_level, i), share, on_or_off);
-    const double most = at_or_zero(max_level, i);
-    level[i] = wanted > 0 && most > 0 ? std::min(wanted, std::min(most, 1.0)) : 0.0;
-  }
+  for (std::size_t i = 0; i < level.size(); ++i) level[i] = faded_level(i, share);
   switch_off_partial(level);
   const double left = excess_share(now);
+  if (left > 0) {
+    // Rows alone would put out the lamps that goals need least one after the other, each in a part of the time.
+    scale_to_limits(worst_lux_per_level, max_lx, level, 0, switched, worth);
+    for (std::size_t i = 0; i < level.size(); ++i) {
+      const double wanted = faded_level(i, share);
+      const bool on_or_off = is_on_or_off(switched, static_cast<Eigen::Index>(i));
+      level[i] = on_or_off ? wanted : level[i] + left * (wanted - level[i]);
+    }
+    switch_off_partial(level);
+  }
   scale_rows(
       worst_lux_per_level, std::min(worst_lux_per_level.rows(), max_lx.size()),
-      [&](Eigen::Index row) {
-        return left > 0 && row < excess_lx.size() ? max_lx[row] + left * excess_lx[row] : max_lx[row];
-      },
+      [&](Eigen::Index row) { return row < excess_lx.size() ? max_lx[row] + left * excess_lx[row] : max_lx[row]; },
       level, 0, switched, worth);
 }
 
 double OutputProgram::excess_share(Time now) const {
-  if (excess_lx.size() == 0 || now >= excess_since + excess_fades) return 0;
+  if (excess_lx.size() == 0 || now >= excess_since + kExcessFades) return 0;
   if (now <= excess_since) return 1;
-  return 1 - to_seconds(now - excess_since) / to_seconds(excess_fades);
+  return 1 - to_seconds(now - excess_since) / to_seconds(kExcessFades);
 }
 
 bool OutputProgram::desk_has_a_say(Time now) const {

@@ -63,6 +63,9 @@ struct HeadDim {
   [[nodiscard]] double share(Time now) const;
 };
 
+/// Light that only now is known to be perhaps too much goes out within this: fast for paper, slow for an eye.
+inline constexpr Duration kExcessFades = std::chrono::seconds(1);
+
 struct OutputProgram {
   std::uint64_t revision = 0;                ///< grows with each change
   std::vector<double> from_level, to_level;  ///< per fixture
@@ -81,10 +84,10 @@ struct OutputProgram {
   Eigen::VectorXd max_lx;
   LampWorth worth{};  ///< decides which lamps dim for a limit
   /// Light above `max_lx`, per row, that was already on when the rows were set: only now is it known to be perhaps too
-  /// much. It goes out evenly from `excess_since` on, so that nothing jumps. Empty: there is none.
+  /// much. Each lamp gives its part up evenly within kExcessFades from `excess_since` on, so that none jumps. Empty:
+  /// there is none.
   Eigen::VectorXd excess_lx{};
   Time excess_since{};
-  Duration excess_fades{};
 
   /// Lighting desks in control, one per part of the rig that follows one.
   std::vector<DeskBlend> desks;
@@ -118,6 +121,8 @@ struct OutputProgram {
   void switch_off_partial(std::span<double> level) const;
   /// Share of `excess_lx` that is still let out.
   [[nodiscard]] double excess_share(Time now) const;
+  /// Of the fade alone, without limits.
+  [[nodiscard]] double faded_level(std::size_t fixture, double share) const;
   void own_levels_at(Time now, std::span<double> level) const;
   void shared_levels_at(Time now, std::span<double> level) const;
 };

@@ -38,9 +38,6 @@ const char* name_of(Phase phase) {
 
 namespace {
 
-/// Light that only now is known to be perhaps too much goes out within this: fast for paper, slow for an eye.
-constexpr Duration kExcessFades = std::chrono::seconds(1);
-
 /// Per fixture, 1: its product has a bit for a burnt-out lamp.
 std::vector<std::uint8_t> fixtures_that_tell_of_lamps(const Rig& rig) {
   std::vector<std::uint8_t> tell(rig.fixtures.size(), 0);
@@ -117,7 +114,6 @@ void ShowController::State::fade(Time now, std::vector<double> from, std::vector
     const Eigen::Map<const Eigen::VectorXd> level(lit.data(), static_cast<Eigen::Index>(lit.size()));
     program.excess_lx = (program.worst_lux_per_level * level - program.max_lx).cwiseMax(0.0);
     program.excess_since = now;
-    program.excess_fades = kExcessFades;
   }
   program.from_level = std::move(from);
   program.to_level = std::move(to);

@@ -52,7 +52,8 @@ double goal_or_limit_lx(const Rig& rig, std::size_t point, const ShowStatus& sta
 ShowRules::ShowRules(const Rig& rig, const Slack& slack) : rig_(rig), slack_(slack), zones_(rig), judged_(rules) {
   static_assert(std::size(kSentences) == rules);
   for (std::size_t r = 0; r < rules; ++r) judged_[r].expected = kSentences[r];
-  const double fastest_s = std::min({rig.control.fade_s, rig.control.correction_fade_s, rig.safe.fade_s});
+  const double fastest_s =
+      std::min({rig.control.fade_s, rig.control.correction_fade_s, rig.safe.fade_s, to_seconds(kExcessFades)});
   // An s-curve is steepest in its middle: 1.5 times its mean. Two fades may follow each other within a tick.
   max_step_ = fastest_s > 0 ? std::min(1.0, 1.5 * kTick_s / fastest_s * 1.25) : 1.0;
   max_rate_per_s_ = max_step_ / kTick_s;

@@ -187,7 +187,6 @@ TEST(OutputProgram, LightThatIsTooMuchOnlyNowGoesOutEvenly) {
   program.max_lx = Eigen::VectorXd::Constant(1, 50);
   program.excess_lx = Eigen::VectorXd::Constant(1, 30);  // 80 lx were on
   program.excess_since = at(2);
-  program.excess_fades = std::chrono::seconds(1);
   EXPECT_NEAR(levels(program, at(1))[0], 0.8, 1e-9);
   EXPECT_NEAR(levels(program, at(2))[0], 0.8, 1e-9);
   EXPECT_NEAR(levels(program, at(2.25))[0], 0.725, 1e-9);
@@ -196,6 +195,33 @@ TEST(OutputProgram, LightThatIsTooMuchOnlyNowGoesOutEvenly) {
   EXPECT_NEAR(levels(program, at(9))[0], 0.5, 1e-9);
   program.to_level = {1};  // what was not on before is not let through
   EXPECT_NEAR(levels(program, at(2))[0], 0.8, 1e-9);
+}
+
+TEST(OutputProgram, NoLampGoesOutFasterThanTheExcess) {
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> share(0, 1);
+  for (int i = 0; i < 300; ++i) {
+    OutputProgram program = random_program(random);
+    program.to_level = program.from_level;
+    program.duration = {};
+    for (double& most : program.max_level) most = 1;
+    for (std::size_t j = 0; j < program.from_level.size(); ++j)
+      program.worth.per_level_squared.push_back(100 * share(random));  // goals need some lamps, and not others
+    const Eigen::Map<const Eigen::VectorXd> lit(program.from_level.data(),
+                                                static_cast<Eigen::Index>(program.from_level.size()));
+    program.excess_lx = (program.worst_lux_per_level * lit - program.max_lx).cwiseMax(0.0);
+    program.excess_since = program.start;
+    std::vector<double> before = levels(program, program.start);
+    for (std::size_t j = 0; j < before.size(); ++j) ASSERT_NEAR(before[j], program.from_level[j], 1e-9);
+    for (int tick = 1; tick <= 50; ++tick) {
+      const std::vector<double> after = levels(program, program.start + from_seconds(0.02 * tick));
+      for (std::size_t j = 0; j < after.size(); ++j) {
+        ASSERT_LE(after[j], before[j] + 1e-9);
+        ASSERT_GE(after[j], before[j] - 0.02 * program.from_level[j] - 1e-9) << "at tick " << tick;
+      }
+      before = after;
+    }
+  }
 }
 
 TEST(OutputProgram, DimsForALimitTheLampsThatOtherGoalsNeedLess) {
