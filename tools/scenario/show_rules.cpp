@@ -118,7 +118,7 @@ void ShowRules::pause(Pause& pause, double at_s, bool on) {
 
 void ShowRules::held_by_hand(double at_s, std::size_t fixture, double level, std::optional<double> for_s) {
   disturbed(at_s);
-  hands_[fixture] = {level, at_s, for_s ? std::optional(at_s + *for_s) : std::nullopt};
+  hands_[fixture] = {level, at_s, for_s ? std::optional(at_s + *for_s) : std::nullopt, false};
 }
 
 void ShowRules::released(const std::vector<std::string>& names) {
@@ -128,7 +128,7 @@ void ShowRules::released(const std::vector<std::string>& names) {
 }
 
 void ShowRules::clock_stepped() {
-  std::erase_if(hands_, [](const auto& hand) { return hand.second.until_s.has_value(); });
+  for (auto& [fixture, hand] : hands_) hand.end_unknown = hand.end_unknown || hand.until_s.has_value();
 }
 
 void ShowRules::bypassed(double at_s, const std::vector<std::string>& names, bool on) {
@@ -187,7 +187,8 @@ void ShowRules::daemon_gone(double at_s, const ShowStatus& last) {
   if (by_hand_s_ && at_s - *by_hand_s_ < unknown_s)
     std::erase_if(gone_with_->by_hand, [&](const ByHand& held) {
       const auto hand = hands_.find(held.index);
-      return held.what == ByHand::What::goal || hand == hands_.end() || hand->second.level != held.value;
+      return held.what == ByHand::What::goal || hand == hands_.end() || hand->second.end_unknown ||
+             hand->second.level != held.value;
     });
   for (double& sent_s : last_sent_s_) sent_s = NAN;
 }
@@ -242,6 +243,7 @@ void ShowRules::look(double at_s, const Instant& instant, const std::vector<bool
   look_at_zones(at_s, instant);
   before_ = instant.level;
   before_s_ = at_s;
+  if (!dark_) lit_lux_ = instant.lux;
 }
 
 void ShowRules::look_without_daemon(double at_s, const Instant& instant, bool guarded) {
@@ -299,7 +301,7 @@ void ShowRules::look_at_meters(double at_s, const Instant& instant) {
     const auto point = rig_.luxmeters[m].point;
     if (!point || lie.reasons == 0) continue;
     const double lux = instant.lux[*point];
-    if (std::isnan(lie.honest_lx)) lie.honest_lx = lux;
+    if (std::isnan(lie.honest_lx)) lie.honest_lx = dark_ && !lit_lux_.empty() ? lit_lux_[*point] : lux;
     // Lamps that give the least that readings can make it believe need most.
     const double least_gain = rig_.control.gain_min * (1 - rig_.limits.open_loop_margin);
     const double allowed =
@@ -361,15 +363,19 @@ void ShowRules::look_at_blackout(double at_s, const Instant& instant) {
 
 void ShowRules::look_at_hands(double at_s, const Instant& instant) {
   for (auto hand = hands_.begin(); hand != hands_.end();) {
-    if (hand->second.until_s && at_s >= *hand->second.until_s - kTick_s) {
-      hand = hands_.erase(hand);
-      hand_over_s_ = at_s;
-      continue;
-    }
     const auto& [f, held] = *hand;
     const bool listed =
         std::any_of(instant.status->by_hand.begin(), instant.status->by_hand.end(),
                     [f = f](const ByHand& one) { return one.what == ByHand::What::level && one.index == f; });
+    if (held.end_unknown ? !listed : held.until_s && at_s >= *held.until_s - kTick_s) {
+      hand = hands_.erase(hand);
+      hand_over_s_ = at_s;
+      continue;
+    }
+    if (held.end_unknown) {
+      ++hand;
+      continue;
+    }
     const bool seen = at_s - held.since_s > 1 + slack_.time_s && at_s - disturbed_s_.value_or(0) >= slack_.time_s;
     if (seen && !listed)
       broken(

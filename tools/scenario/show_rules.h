@@ -123,6 +123,7 @@ class ShowRules {
   double before_s_ = 0;                  ///< that instant
   std::vector<double> last_sent_s_;      ///< per bus
   std::vector<Joints> dark_joints_;      ///< of heads when it went dark
+  std::vector<double> lit_lux_;          ///< per point: true light when it last was not dark
   std::set<std::string> bypassed_;
   struct Lie {
     int reasons = 0;
@@ -133,6 +134,7 @@ class ShowRules {
   struct Hand {
     double level = 0, since_s = 0;
     std::optional<double> until_s;
+    bool end_unknown = false;  ///< its end was a time of day, and the clock was set
   };
   std::map<std::size_t, Hand> hands_;  ///< fixtures
   std::optional<ShowStatus> gone_with_;

@@ -268,6 +268,47 @@ TEST_F(RulesTest, WhileABusIsDeadALieIsNotCorrected) {
   EXPECT_FALSE(limited.end()[0].held);
 }
 
+// What a meter that fails in a blackout must not exceed is the light before it, not the dark.
+TEST_F(RulesTest, AMeterThatFailsInTheDarkIsMeasuredByTheLightBefore) {
+  const std::size_t point = *show.rig.luxmeters[0].point;
+  ShowRules lit(show.rig), never_lit(show.rig);
+  show.now.lux[point] = 700;
+  lit.look(1, show.now, {});
+  for (ShowRules* one : {&lit, &never_lit}) {
+    show.now.lux[point] = 0;
+    one->blackout(2, true);
+    one->look(3, show.now, {});
+    one->meter_lies(3, 0, true);
+    one->look(4, show.now, {});
+    one->blackout(5, false);
+    show.now.lux[point] = 1000;
+    one->look(40, show.now, {});
+  }
+  EXPECT_TRUE(lit.end()[4].held);
+  EXPECT_FALSE(never_lit.end()[4].held);
+}
+
+// Nobody knows when a hold until a time of day ends once the clock is set. Until then it is a hold.
+TEST_F(RulesTest, AHoldWhoseEndTheClockMovedIsStillAHold) {
+  const std::size_t point = *show.rig.luxmeters[0].point;
+  ShowRules held(show.rig), free(show.rig);
+  held.held_by_hand(1, 0, 0.9, 5.0);
+  held.clock_stepped();
+  show.now.lux[point] = 100;
+  for (ShowRules* one : {&held, &free}) one->meter_lies(2, 0, true);
+  ByHand level;
+  level.value = 0.9;
+  free.look(3, show.now, {});
+  show.status.by_hand = {level};
+  held.look(3, show.now, {});
+  show.now.lux[point] = 1000;
+  held.look(40, show.now, {});
+  show.status.by_hand.clear();
+  free.look(40, show.now, {});
+  EXPECT_FALSE(free.end()[4].held);
+  EXPECT_TRUE(held.end()[4].held);
+}
+
 // A lamp that a wrong meter drove up is bypassed, and comes back as it was.
 TEST_F(RulesTest, ABypassedLampIsNotCorrected) {
   const std::size_t point = *show.rig.luxmeters[0].point;
