@@ -84,6 +84,7 @@ GainEstimator::GainEstimator(const Rig& rig, const LightModel& model)
   gain_max_ = rig.control.gain_max;
   const double margin = std::clamp(rig.limits.open_loop_margin, 0.0, 0.9);
   local_ = 1 / (1 - margin);
+  doubted_.setConstant(meters, meter_.cols(), false);
   prior_gain_ = std::clamp(1.0, gain_min_, gain_max_);
   prior_gain_sd_ = (gain_max_ - gain_min_) / 4;
   prior_local_sd_ = std::max(kMinLocalSd, margin / 3);
@@ -128,6 +129,12 @@ const GainEstimator::Evidence* GainEstimator::latest(std::size_t luxmeter) const
   return nullptr;
 }
 
+bool GainEstimator::contradicted(std::size_t luxmeter) const {
+  const std::optional<Evidence>& over = over_[luxmeter];
+  const Evidence* lesson = latest(luxmeter);
+  return over && !(lesson && lesson->taken > over->taken);
+}
+
 double GainEstimator::common_tolerance() const {
   double best = evidence_.empty() ? 0 : 1;
   for (const Evidence& e : evidence_) best = std::min(best, luxmeters_[e.luxmeter].tolerance);
@@ -139,8 +146,11 @@ bool GainEstimator::confirmed(std::size_t point) const {
 }
 
 double GainEstimator::upper_gain(std::size_t fixture) const {
-  for (std::size_t i = 0; i < over_.size(); ++i)
-    if (over_[i] && meter_(static_cast<Index>(i), static_cast<Index>(fixture)) > 0) return gain_max_;
+  const auto j = static_cast<Index>(fixture);
+  for (std::size_t m = 0; m < over_.size(); ++m) {
+    const auto i = static_cast<Index>(m);
+    if (doubted_(i, j) || (contradicted(m) && meter_(i, j) > 0)) return gain_max_;
+  }
   return std::min(gain_max_, gain(fixture) + 3 * gain_standard_error(fixture));
 }
 
@@ -294,7 +304,7 @@ Judgement GainEstimator::judge(const LuxReading& reading, std::span<const double
       if (level[j] > 0)
         curve_lx += row.lux_per_level[j] * row.factor[j] * level[j] * kCurveError *
                     (before[j] > 0 ? std::min(kFarthestStep, std::abs(std::log(level[j] / before[j]))) : kFarthestStep);
-    const double allowed = std::hypot(smallest_jump_lx(expected), curve_lx);
+    const double allowed = judgement.allowed_lx = std::hypot(smallest_jump_lx(expected), curve_lx);
     if (std::abs(reading.lux - expected.lux) > allowed)
       return reject(fmt::format("it reads {:.4g} lx where {:.4g} ± {:.2g} lx are expected from what it read before",
                                 reading.lux, expected.lux, allowed));
@@ -323,6 +333,16 @@ void GainEstimator::shows(const LuxReading& reading, std::span<const double> lev
   meter = {reading.lux, reading.taken, vector_of(level), ""};
 }
 
+void GainEstimator::doubt_lamps(const Judgement& judgement, bool showed_more, const VectorXd& level) {
+  const auto i = static_cast<Index>(judgement.luxmeter);
+  for (Index j = 0; j < level.size(); ++j) {
+    const double most_more_lx = meter_(i, j) * level[j] * (gain_max_ * local_ - factor_(i, j));
+    const bool would_show = most_more_lx > judgement.allowed_lx;
+    if (judgement.stuck || (judgement.believed && would_show)) doubted_(i, j) = false;
+    if (!judgement.stuck && showed_more && would_show) doubted_(i, j) = true;
+  }
+}
+
 std::vector<Judgement> GainEstimator::update(Time now, std::span<const LuxReading> readings,
                                              std::span<const double> level) {
   const VectorXd at = vector_of(level);
@@ -333,10 +353,13 @@ std::vector<Judgement> GainEstimator::update(Time now, std::span<const LuxReadin
     const Judgement& judgement = judgements.emplace_back(judge(reading, level));
     if (judgement.believed) believed.push_back(&reading);
     std::optional<Evidence>& over = over_[judgement.luxmeter];
-    if (judgement.believed || judgement.stuck)
+    const bool more =
+        !judgement.believed && reading.lux > judgement.predicted_lx && reading.lux <= judgement.highest_lx;
+    if (judgement.stuck)
       over.reset();
-    else if (reading.lux > judgement.predicted_lx && reading.lux <= judgement.highest_lx)
+    else if (more)
       over = Evidence{reading.luxmeter, reading.lux, reading.taken, at};
+    doubt_lamps(judgement, more, at);
   }
   // Values of a stuck meter since it stopped changing cannot be trusted either, nor later ones that happen to match the
   // light at that time.
@@ -373,6 +396,7 @@ void GainEstimator::forget(std::size_t luxmeter) {
   std::erase_if(evidence_, [&](const Evidence& e) { return e.luxmeter == luxmeter; });
   meters_.at(luxmeter) = Meter{};
   over_.at(luxmeter).reset();
+  doubted_.row(static_cast<Index>(luxmeter)).setConstant(false);
   Time newest{};
   for (const Evidence& e : evidence_) newest = std::max(newest, e.taken);
   estimate(newest);

@@ -41,6 +41,7 @@ struct Judgement {
   std::string why;                       ///< empty if believed
   double predicted_lx = 0;               ///< before this reading
   double lowest_lx = 0, highest_lx = 0;  ///< range that the model allows
+  double allowed_lx = 0;                 ///< around predicted_lx, from what the meter read before; 0 = it has not
 };
 
 /// Lux at a point with its standard error (transport, gains, and local errors).
@@ -152,7 +153,8 @@ class GainEstimator {
     return gain_error_[static_cast<Eigen::Index>(fixture)];
   }
   /// Upper bound of the fixture's gain: estimate + 3 standard errors, at most gain_max. gain_max if a meter that it
-  /// lights shows more than what it taught before: one of both was wrong.
+  /// lights shows more than what it taught before: one of both was wrong. It stays so until that meter, with this lamp
+  /// lit, shows what it taught.
   [[nodiscard]] double upper_gain(std::size_t fixture) const;
 
   /// A number that changes with everything learned: predictions at the same levels differ only with it.
@@ -232,6 +234,9 @@ class GainEstimator {
   [[nodiscard]] Eigen::RowVectorXd unmeasured_worst(const Row& row) const;
   [[nodiscard]] double max_lux(const Row& row, const Eigen::VectorXd& level, Time now) const;
   [[nodiscard]] const Evidence* latest(std::size_t luxmeter) const;
+  /// No reading was learned from since the one in over_.
+  [[nodiscard]] bool contradicted(std::size_t luxmeter) const;
+  void doubt_lamps(const Judgement& judgement, bool showed_more, const Eigen::VectorXd& level);
   [[nodiscard]] double covariance(const Row& one, const Eigen::VectorXd& one_level, const Evidence& other) const;
   [[nodiscard]] Eigen::VectorXd as_given(std::span<const double> level) const;  ///< with the 1 for daylight
   /// The same, with lost lamps at their believed levels.
@@ -273,9 +278,12 @@ class GainEstimator {
   std::vector<std::optional<Lost>> lost_;  ///< per fixture; may be empty
   std::vector<std::uint8_t> watched_;      ///< per luxmeter; may be empty
   std::vector<Evidence> evidence_;         ///< in order of arrival
-  /// Per luxmeter: a reading that contradicts what it read before, and is higher. Nothing is learned from it, but the
-  /// meter may be right now (somebody stood in the light before), so limits hold by it. Until a reading is believed.
+  /// Per luxmeter: the last reading that contradicts what it read before, and is higher. Nothing is learned from it, but
+  /// the meter may be right now (somebody stood in the light before), so limits hold by it while contradicted().
   std::vector<std::optional<Evidence>> over_;
+  /// Luxmeters × columns: this lamp may be why the meter showed more than what it had taught. A believed reading ends
+  /// the doubt only where the lamp is bright enough to show it: with the lamp dark, any lesson fits.
+  Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> doubted_;
   std::vector<Meter> meters_;
   std::uint64_t knowledge_ = 0;
   Eigen::LDLT<Eigen::MatrixXd> innovation_;  ///< covariance of the evidence

@@ -28,8 +28,8 @@ RowVectorXd GainEstimator::unmeasured_worst(const Row& row) const {
 double GainEstimator::max_lux(const Row& row, const VectorXd& level, Time now) const {
   const double unmeasured = unmeasured_worst(row).dot(level);
   if (!row.luxmeter || latest(*row.luxmeter) == nullptr) return unmeasured + row.unseen_lx;
-  const auto& over = over_[*row.luxmeter];
-  const Evidence& e = over ? *over : *latest(*row.luxmeter);
+  const bool over = contradicted(*row.luxmeter);
+  const Evidence& e = over ? *over_[*row.luxmeter] : *latest(*row.luxmeter);
   // max Σ A_j w_j over lower ≤ A ≤ upper, A · (levels of the reading) ≤ the true value at most: a fractional knapsack,
   // filled by best w_j per level. w_j: level, times the most that the dimmer's true curve may add on the way there.
   const Index n = level.size();
@@ -39,7 +39,9 @@ double GainEstimator::max_lux(const Row& row, const VectorXd& level, Time now) c
   for (Index j = 0; j < n; ++j) {
     const double m = row.lux_per_level[j], x = row.factor[j], sd = row.factor_error[j];
     // What is learned of lamps is what the meter shows of them. If it shows too little by its tolerance, then of all.
-    const double most = over ? gain_max_ * local_ : std::min(gain_max_ * local_, (x + 3 * sd) / (1 - tolerance));
+    const double bound = gain_max_ * local_;
+    const bool doubted = over || doubted_(static_cast<Index>(*row.luxmeter), j);
+    const double most = doubted ? bound : std::min(bound, (x + 3 * sd) / (1 - tolerance));
     upper[j] = m * most + (m > 0 ? 0 : 3 * row.standard_error[j] * gain_max_);
     lower[j] = std::min(upper[j], m * std::max(gain_min_ / local_, x - 3 * sd));
     w[j] = level[j] *

@@ -195,6 +195,15 @@ TEST(GainEstimator, KeepsALimitByAHigherReadingThatItDoesNotBelieve) {
     show(6, 1);
     level = estimator.correct(level, at_s(6)).level;
     EXPECT_LE(world.true_lux(level)[0], max_lx) << seed;
+    // The lamps go out for a while. A dark meter contradicts nothing, and settles nothing.
+    const std::vector<double> dark(level.size(), 0.0);
+    for (int k = 0; k < 3; ++k) {
+      const LuxReading reading{0, 1e-3 * (k + 1), at_s(7 + k)};
+      estimator.shows(reading, dark);
+      estimator.update(at_s(7 + k), std::span(&reading, 1), dark);
+    }
+    EXPECT_GE(estimator.max_lux_at_point(0, level, at_s(10)), world.true_lux(level)[0]) << seed;
+    EXPECT_GE(estimator.max_lux_at_point(0, world.plan, at_s(10)), world.true_lux(world.plan)[0]) << seed;
   }
   EXPECT_GT(tried, 20);
 }
