@@ -80,7 +80,8 @@ bool ShowRules::disturbed_lately(double at_s) const {
 }
 
 bool ShowRules::deaf_lately(double at_s) const {
-  return deaf_ > 0 || (deaf_s_ && (at_s - *deaf_s_ < kHearsAgain_s || meters_pause_.keeps(*deaf_s_)));
+  return deaf_ > 0 || (deaf_s_ && (at_s - *deaf_s_ < kHearsAgain_s || meters_pause_.keeps(*deaf_s_) ||
+                                   lamps_pause_.keeps(*deaf_s_)));
 }
 
 bool ShowRules::desk_lately(double at_s) const { return desk_ || (desk_s_ && at_s - *desk_s_ < kAfterDesk_s); }
@@ -145,14 +146,14 @@ void ShowRules::meter_lies(double at_s, std::size_t luxmeter, bool lies) {
   Lie& lie = lies_[luxmeter];
   lie.reasons += lies ? 1 : -1;
   lie.changed_s = at_s;
-  if (lie.reasons == 0) lie.honest_lx = NAN;
+  if (lie.reasons == 0) lie.honest_lx = NAN, lie.most_lx = 0;
 }
 
 bool ShowRules::lied_to_lately(std::size_t point, double at_s) const {
   return std::any_of(lies_.begin(), lies_.end(), [&](const auto& of) {
     return rig_.luxmeters[of.first].point == point &&
            (of.second.reasons > 0 || at_s - of.second.changed_s < kHearsAgain_s ||
-            lamps_pause_.keeps(of.second.changed_s));
+            lamps_pause_.keeps(of.second.changed_s) || meters_pause_.keeps(of.second.changed_s));
   });
 }
 
@@ -302,14 +303,15 @@ void ShowRules::look_at_meters(double at_s, const Instant& instant) {
     if (!point || lie.reasons == 0) continue;
     const double lux = instant.lux[*point];
     if (std::isnan(lie.honest_lx)) lie.honest_lx = dark_ && !lit_lux_.empty() ? lit_lux_[*point] : lux;
+    // A goal that is lowered lets light of others stay, which have goals of their own.
+    lie.most_lx = std::max({lie.most_lx, lie.honest_lx, goal_or_limit_lx(rig_, *point, *instant.status)});
     // Lamps that give the least that readings can make it believe need most.
     const double least_gain = rig_.control.gain_min * (1 - rig_.limits.open_loop_margin);
-    const double allowed =
-        std::max(lie.honest_lx, goal_or_limit_lx(rig_, *point, *instant.status)) / least_gain * kOffModel + 1;
+    const double allowed = lie.most_lx / least_gain * kOffModel + 1;
     const bool by_hand_lately = !hands_.empty() || !bypassed_.empty() || desk_lately(at_s) ||
                                 (disturbed_s_ && at_s - *disturbed_s_ < kHandWithin_s) ||
                                 (hand_over_s_ && at_s - *hand_over_s_ < kHandWithin_s);
-    if (!unmodelled_ && lux > allowed && !by_hand_lately)
+    if (!unmodelled_ && lux > allowed && !by_hand_lately && !deaf_lately(at_s))  // a deaf lamp stays where it was
       broken(wrong_meter, at_s,
              fmt::format("{} gets {:.1f} lx while its luxmeter \"{}\" is wrong; the model allows {:.1f}",
                          rig_.points[*point].name, lux, rig_.luxmeters[m].name, allowed));

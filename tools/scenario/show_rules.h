@@ -129,6 +129,7 @@ class ShowRules {
     int reasons = 0;
     double changed_s = 0;    ///< when one came or went
     double honest_lx = NAN;  ///< true light at its point when it began; NaN: not seen yet
+    double most_lx = 0;      ///< of that, and of the goals and limits there since
   };
   std::map<std::size_t, Lie> lies_;  ///< by luxmeter: all that have lied
   struct Hand {

@@ -309,6 +309,67 @@ TEST_F(RulesTest, AHoldWhoseEndTheClockMovedIsStillAHold) {
   EXPECT_TRUE(held.end()[4].held);
 }
 
+// What a wrong meter drove up is corrected by the next sample, and there is none while meters are mute.
+TEST_F(RulesTest, WhileMetersAreMuteALieIsNotCorrected) {
+  const std::size_t point = *show.rig.luxmeters[0].point;
+  show.rig.points[point].max_lx = 50;
+  show.now.lux[point] = 60;
+  ShowRules mute(show.rig), heard(show.rig);
+  for (ShowRules* one : {&mute, &heard}) one->meter_lies(1, 0, true);
+  for (ShowRules* one : {&mute, &heard}) one->meter_lies(5, 0, false);
+  mute.meter_is_mute(5.4, true);
+  for (ShowRules* one : {&mute, &heard}) one->look(21, show.now, {});
+  EXPECT_TRUE(mute.end()[0].held);
+  EXPECT_FALSE(heard.end()[0].held);
+}
+
+// A goal is lowered, and the lamp does not hear it.
+TEST_F(RulesTest, ADeafLampIsNoMetersDoing) {
+  const std::size_t point = *show.rig.luxmeters[0].point;
+  ShowRules deaf(show.rig), hears(show.rig);
+  for (ShowRules* one : {&deaf, &hears}) {
+    show.now.lux[point] = 10;
+    one->meter_lies(1, 0, true);
+    one->look(2, show.now, {});
+    show.now.lux[point] = 1000;
+  }
+  deaf.fixture_is_deaf(3, true);
+  for (ShowRules* one : {&deaf, &hears}) one->look(40, show.now, {});
+  EXPECT_TRUE(deaf.end()[4].held);
+  EXPECT_FALSE(hears.end()[4].held);
+}
+
+// A goal is lowered below what other lamps give there.
+TEST_F(RulesTest, ALoweredGoalIsNoMetersDoing) {
+  const std::size_t point = *show.rig.luxmeters[0].point;
+  ShowRules lowered(show.rig), low(show.rig);
+  show.now.lux[point] = 10;
+  for (ShowRules* one : {&lowered, &low}) one->meter_lies(1, 0, true);
+  show.status.points[point].goal_lx = 10;
+  low.look(2, show.now, {});
+  show.status.points[point].goal_lx = 700;
+  lowered.look(2, show.now, {});
+  show.status.points[point].goal_lx = 10;
+  show.now.lux[point] = 500;
+  for (ShowRules* one : {&lowered, &low}) one->look(40, show.now, {});
+  EXPECT_TRUE(lowered.end()[4].held);
+  EXPECT_FALSE(low.end()[4].held);
+}
+
+// Lamps that came back brighter than they were known to be, and then hear nothing.
+TEST_F(RulesTest, WhileABusIsDeadADeafLampsLessonStays) {
+  const std::size_t point = *show.rig.luxmeters[0].point;
+  show.rig.points[point].max_lx = 50;
+  show.now.lux[point] = 60;
+  ShowRules dead(show.rig), hears(show.rig);
+  for (ShowRules* one : {&dead, &hears}) one->fixture_is_deaf(1, true);
+  for (ShowRules* one : {&dead, &hears}) one->fixture_is_deaf(20, false);
+  dead.lamps_are_stuck(22, true);
+  for (ShowRules* one : {&dead, &hears}) one->look(40, show.now, {});
+  EXPECT_TRUE(dead.end()[0].held);
+  EXPECT_FALSE(hears.end()[0].held);
+}
+
 // A lamp that a wrong meter drove up is bypassed, and comes back as it was.
 TEST_F(RulesTest, ABypassedLampIsNotCorrected) {
   const std::size_t point = *show.rig.luxmeters[0].point;
