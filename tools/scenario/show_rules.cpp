@@ -149,9 +149,11 @@ void ShowRules::meter_lies(double at_s, std::size_t luxmeter, bool lies) {
   if (lie.reasons == 0) lie.honest_lx = NAN, lie.most_lx = 0;
 }
 
-bool ShowRules::lied_to_lately(std::size_t point, double at_s) const {
+double ShowRules::least_gain() const { return rig_.control.gain_min * (1 - rig_.limits.open_loop_margin); }
+
+bool ShowRules::lied_to_lately(std::optional<std::size_t> point, double at_s) const {
   return std::any_of(lies_.begin(), lies_.end(), [&](const auto& of) {
-    return rig_.luxmeters[of.first].point == point &&
+    return (!point || rig_.luxmeters[of.first].point == point) &&
            (of.second.reasons > 0 || at_s - of.second.changed_s < kHearsAgain_s ||
             lamps_pause_.keeps(of.second.changed_s) || meters_pause_.keeps(of.second.changed_s));
   });
@@ -271,9 +273,15 @@ void ShowRules::look_at_limits(double at_s, const Instant& instant) {
   for (std::size_t p = 0; p < instant.lux.size(); ++p) {
     if (!rig_.points[p].max_lx || lied_to_lately(p, at_s)) continue;  // its own rule, look_at_meters
     double tolerance = kLimitSlack;
-    for (std::size_t m = 0; m < rig_.luxmeters.size(); ++m)
-      if (rig_.luxmeters[m].point == p) tolerance = std::max(tolerance, rig_.luxmeters[m].tolerance);
-    if (instant.lux[p] > *rig_.points[p].max_lx * (1 + tolerance))
+    bool measured = false;
+    for (std::size_t m = 0; m < rig_.luxmeters.size(); ++m) {
+      if (rig_.luxmeters[m].point != p) continue;
+      measured = true;
+      tolerance = std::max(tolerance, rig_.luxmeters[m].tolerance);
+    }
+    // Where nobody measures, the limit is the model's, with what meters elsewhere teach of the lamps.
+    const double most = !measured && lied_to_lately(std::nullopt, at_s) ? kOffModel / least_gain() : 1 + tolerance;
+    if (instant.lux[p] > *rig_.points[p].max_lx * most)
       broken(limits, at_s,
              fmt::format("{} gets {:.1f} lx, its limit is {:g} lx", rig_.points[p].name, instant.lux[p],
                          *rig_.points[p].max_lx));
@@ -306,8 +314,7 @@ void ShowRules::look_at_meters(double at_s, const Instant& instant) {
     // A goal that is lowered lets light of others stay, which have goals of their own.
     lie.most_lx = std::max({lie.most_lx, lie.honest_lx, goal_or_limit_lx(rig_, *point, *instant.status)});
     // Lamps that give the least that readings can make it believe need most.
-    const double least_gain = rig_.control.gain_min * (1 - rig_.limits.open_loop_margin);
-    const double allowed = lie.most_lx / least_gain * kOffModel + 1;
+    const double allowed = lie.most_lx / least_gain() * kOffModel + 1;
     const bool by_hand_lately = !hands_.empty() || !bypassed_.empty() || desk_lately(at_s) ||
                                 (disturbed_s_ && at_s - *disturbed_s_ < kHandWithin_s) ||
                                 (hand_over_s_ && at_s - *hand_over_s_ < kHandWithin_s);

@@ -94,7 +94,9 @@ class ShowRules {
   [[nodiscard]] bool desk_lately(double at_s) const;
   [[nodiscard]] bool deaf_lately(double at_s) const;
   /// A meter there shows something else, or has until a moment ago.
-  [[nodiscard]] bool lied_to_lately(std::size_t point, double at_s) const;
+  [[nodiscard]] bool lied_to_lately(std::optional<std::size_t> point, double at_s) const;  ///< none = anywhere
+  /// The least that readings can make a lamp be taken for.
+  [[nodiscard]] double least_gain() const;
   [[nodiscard]] bool any_lies_lately(double at_s, double for_s) const;
   /// Readings may still be those of light that is not the truth's.
   [[nodiscard]] bool unmodelled_lately(double at_s, double for_s) const;

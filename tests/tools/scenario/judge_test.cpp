@@ -249,6 +249,22 @@ TEST_F(RulesTest, AMeterThatLiesExcusesNoLimitElsewhere) {
   EXPECT_FALSE(judged[0].held) << "its own meter has been right for a long time";
 }
 
+// A limit that nobody measures is kept by what meters elsewhere teach: as far as these can be wrong and be believed.
+TEST_F(RulesTest, WhereNobodyMeasuresALimitIsAsGoodAsMetersElsewhere) {
+  show.rig.luxmeters.resize(1);
+  const std::size_t other = *show.rig.luxmeters[0].point == 0 ? 1 : 0;
+  show.rig.points[other].max_lx = 50;
+  ShowRules honest(show.rig), lied(show.rig), beyond(show.rig);
+  for (ShowRules* one : {&lied, &beyond}) one->meter_lies(1, 0, true);
+  show.now.lux[other] = 55;
+  for (ShowRules* one : {&honest, &lied}) one->look(5, show.now, {});
+  show.now.lux[other] = 500;
+  beyond.look(5, show.now, {});
+  EXPECT_FALSE(honest.end()[0].held);
+  EXPECT_TRUE(lied.end()[0].held);
+  EXPECT_FALSE(beyond.end()[0].held);
+}
+
 // What a wrong meter drove up stays while no lamp answers, and is corrected after that.
 TEST_F(RulesTest, WhileABusIsDeadALieIsNotCorrected) {
   const std::size_t point = *show.rig.luxmeters[0].point;
