@@ -1,5 +1,6 @@
 #include "sim/world/deviations.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -12,6 +13,7 @@ namespace {
 
 /// Between a point and a corner of the object that it lies on.
 constexpr double kOnAnObject_m = 0.3;
+constexpr int kHalvings = 6;  // of an offset that leads through a surface; then there is none
 
 /// Emitters of one housing hang together.
 std::size_t mount_of(const Rig& rig, std::size_t f) { return rig.fixtures[f].housing.value_or(f); }
@@ -81,7 +83,7 @@ Deviations Deviations::bad() {
   return bad;
 }
 
-std::vector<FixtureTruth> draw_fixtures(const Rig& rig, const Deviations& deviations) {
+std::vector<FixtureTruth> draw_fixtures(const Rig& rig, const Deviations& deviations, const RayScene* room) {
   const std::uint64_t seed = deviations.seed;
   std::vector<FixtureTruth> truths;
   for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
@@ -109,6 +111,10 @@ std::vector<FixtureTruth> draw_fixtures(const Rig& rig, const Deviations& deviat
       turn_rad[axis] = deviations.angle_error_rad * random_normal(seed, Draw::mount_angle, mount, counter);
     }
     truth.world_from_mount = rig.fixtures[f].world_from_mount;
+    const Vec3 stated_m = truth.world_from_mount.translation_m;
+    // A lamp under a ceiling is not 10 cm above it.
+    for (int k = 0; room && k < kHalvings && room->occluded(stated_m, Vec3::Zero(), stated_m + offset_m); ++k)
+      offset_m *= k + 1 < kHalvings ? 0.5 : 0.0;
     truth.world_from_mount.translation_m += offset_m;
     truth.world_from_mount.rotation = turn(turn_rad) * truth.world_from_mount.rotation;
     if (deviations.photometry_angle_rad > 0) {
@@ -151,15 +157,17 @@ Scene true_scene(Scene scene, const Rig& rig, const Deviations& deviations) {
   if (!(deviations.object_error_m > 0)) return scene;
   const std::size_t objects = scene.object_names.size();
   std::vector<std::uint32_t> object_of_vertex(scene.vertices_m.size(), 0);
+  std::vector<Eigen::AlignedBox3d> box(objects);
   for (std::size_t t = 0; t < scene.triangles.size(); ++t)
-    for (const std::uint32_t v : scene.triangles[t]) object_of_vertex[v] = scene.object_of_triangle[t];
-  // A point on an object is where the object is: such objects stay.
+    for (const std::uint32_t v : scene.triangles[t]) {
+      object_of_vertex[v] = scene.object_of_triangle[t];
+      box[object_of_vertex[v]].extend(scene.vertex_world_m(v));
+    }
+  // A point on an object is where the object is: such objects stay. By its box, as a picture has points far from corners.
   std::vector<bool> stays(objects, false);
   const auto keep = [&](const Vec3& point_m) {
-    for (std::size_t v = 0; v < scene.vertices_m.size(); ++v)
-      if (object_of_vertex[v] > 0 &&
-          (scene.vertex_world_m(static_cast<std::uint32_t>(v)) - point_m).norm() < kOnAnObject_m)
-        stays[object_of_vertex[v]] = true;
+    for (std::size_t o = 1; o < objects; ++o)
+      if (!box[o].isEmpty() && box[o].exteriorDistance(point_m) < kOnAnObject_m) stays[o] = true;
   };
   for (const Point& point : rig.points) keep(point.position_world_m);
   for (const Luxmeter& meter : rig.luxmeters) keep(meter.position_world_m);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/rig/rig.h"
+#include "core/scene/ray_scene.h"
 #include "core/scene/scene.h"
 
 namespace luxrig::sim {
@@ -86,6 +87,8 @@ struct FixtureTruth {
 [[nodiscard]] Scene true_scene(Scene scene, const Rig& rig, const Deviations& deviations);
 
 /// The properties that the seed gives each fixture.
-[[nodiscard]] std::vector<FixtureTruth> draw_fixtures(const Rig& rig, const Deviations& deviations);
+/// room: no mount is drawn behind a surface of it, seen from where the file has it; null = anywhere.
+[[nodiscard]] std::vector<FixtureTruth> draw_fixtures(const Rig& rig, const Deviations& deviations,
+                                                      const RayScene* room = nullptr);
 
 }  // namespace luxrig::sim

@@ -184,7 +184,7 @@ namespace {
 Result<std::unique_ptr<World>> traced_world(const Rig& rig, const Scene& built, const Deviations& deviations,
                                             double max_error, int threads, const Watch& watch) {
   const RayScene scene(true_scene(built, rig, deviations));
-  const std::vector<FixtureTruth> truths = draw_fixtures(rig, deviations);
+  const std::vector<FixtureTruth> truths = draw_fixtures(rig, deviations, &scene);
   const std::vector<Receiver> receivers = receivers_of(rig);
   const auto light = path_light(rig, truths, scene, receivers, max_error, deviations.seed, threads, watch);
   if (!light) return tl::unexpected(light.error());
@@ -193,7 +193,8 @@ Result<std::unique_ptr<World>> traced_world(const Rig& rig, const Scene& built, 
   return World::make(rig, deviations, lux, light_of_heads(rig, truths, scene, receivers, light->spread),
                      daylight_lux(rig, light->transport),
                      response_of(rig, deviations, true_emitters(rig, truths), lux,
-                                 light->transport.direct_lux_per_level.leftCols(fixtures)));
+                                 light->transport.direct_lux_per_level.leftCols(fixtures)),
+                     truths);
 }
 
 }  // namespace
@@ -232,7 +233,7 @@ Result<WorldMaker> WorldMaker::make(const Rig& rig, double max_error, const Watc
 Result<std::unique_ptr<World>> WorldMaker::world(const Deviations& deviations) const {
   const State& s = *state_;
   if (deviations.of_the_room()) return traced_world(s.rig, s.built, deviations, s.max_error, 1, {});
-  const std::vector<FixtureTruth> truths = draw_fixtures(s.rig, deviations);
+  const std::vector<FixtureTruth> truths = draw_fixtures(s.rig, deviations, &s.scene);
   const std::vector<Emitter> lamps = true_emitters(s.rig, truths);
   const auto fixtures = static_cast<Eigen::Index>(s.rig.fixtures.size());
   EvaluateOptions options;
@@ -247,7 +248,7 @@ Result<std::unique_ptr<World>> WorldMaker::world(const Deviations& deviations) c
   const Eigen::MatrixXd lux = direct->direct_lux_per_level + indirect;
   return World::make(s.rig, deviations, lux, light_of_heads(s.rig, truths, s.scene, s.receivers, s.light.spread),
                      daylight_lux(s.rig, nominal),
-                     response_of(s.rig, deviations, lamps, lux, direct->direct_lux_per_level));
+                     response_of(s.rig, deviations, lamps, lux, direct->direct_lux_per_level), truths);
 }
 
 }  // namespace luxrig::sim

@@ -21,9 +21,10 @@ constexpr std::uint64_t kTicksPerSecond = 100;
 class MatrixWorld final : public World {
  public:
   MatrixWorld(const Rig& rig, const Deviations& deviations, const Eigen::MatrixXd& lux_per_level,
-              std::unique_ptr<const HeadLight> heads, Eigen::VectorXd fixed_lx, MeterResponse response)
+              std::unique_ptr<const HeadLight> heads, Eigen::VectorXd fixed_lx, MeterResponse response,
+              std::vector<FixtureTruth> fixtures)
       : points_(rig.points.size()),
-        truths_(draw_fixtures(rig, deviations)),
+        truths_(fixtures.empty() ? draw_fixtures(rig, deviations) : std::move(fixtures)),
         lux_per_level_(lux_per_level),
         head_light_(std::move(heads)),
         fixed_lx_(std::move(fixed_lx)),
@@ -305,7 +306,8 @@ class MatrixWorld final : public World {
 
 Result<std::unique_ptr<World>> World::make(const Rig& rig, const Deviations& deviations,
                                            const Eigen::MatrixXd& lux_per_level, std::unique_ptr<const HeadLight> heads,
-                                           const Eigen::VectorXd& fixed_lx, const MeterResponse& response) {
+                                           const Eigen::VectorXd& fixed_lx, const MeterResponse& response,
+                                           std::vector<FixtureTruth> fixtures) {
   const auto rows = static_cast<Eigen::Index>(rig.points.size() + rig.luxmeters.size());
   const auto columns = static_cast<Eigen::Index>(rig.fixtures.size());
   if (lux_per_level.rows() != rows || lux_per_level.cols() != columns) {
@@ -323,7 +325,8 @@ Result<std::unique_ptr<World>> World::make(const Rig& rig, const Deviations& dev
     return tl::unexpected(
         Fault{Cause::invalid, "", "the fixed light has another size, or an entry that is negative or not finite", {}});
   }
-  return std::make_unique<MatrixWorld>(rig, deviations, lux_per_level, std::move(heads), std::move(fixed), response);
+  return std::make_unique<MatrixWorld>(rig, deviations, lux_per_level, std::move(heads), std::move(fixed), response,
+                                       std::move(fixtures));
 }
 
 }  // namespace luxrig::sim

@@ -61,11 +61,13 @@ class World {
   /// The same from a given transport: `lux_per_level` has a row per point of the rig, then one per luxmeter, and a
   /// column per fixture, at rated flux. Without `heads`, turning a head changes no light.
   /// fixed_lx   light independent of the fixtures (daylight), per row; empty = none
+  /// fixtures   with which the light was computed; empty = as draw_fixtures() has them
   /// Cause::invalid if the shape does not fit or an entry is negative or not finite.
   static Result<std::unique_ptr<World>> make(const Rig& rig, const Deviations& deviations,
                                              const Eigen::MatrixXd& lux_per_level,
                                              std::unique_ptr<const HeadLight> heads = nullptr,
-                                             const Eigen::VectorXd& fixed_lx = {}, const MeterResponse& response = {});
+                                             const Eigen::VectorXd& fixed_lx = {}, const MeterResponse& response = {},
+                                             std::vector<FixtureTruth> fixtures = {});
 
   virtual ~World() = default;
   /// The drive that the wires carry to a fixture. Values out of range are clamped, as by a device.
