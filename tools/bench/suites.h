@@ -30,6 +30,9 @@ namespace luxrig {
 /// axis in a state that was never asked for, or that did not recover. seconds: longest recovery.
 [[nodiscard]] std::vector<BenchRow> bench_faults(const BenchOptions& options);
 
+/// Rigs whose truth differs from their files as real ones do. error: of the light at goals after calibrating.
+[[nodiscard]] std::vector<BenchRow> bench_loop(const BenchOptions& options);
+
 /// Non-negative least squares, cold, warm and limited. error: worst KKT residual. seconds: processor time.
 [[nodiscard]] std::vector<BenchRow> bench_nnls(const BenchOptions& options);
 

@@ -1,0 +1,248 @@
+#include "core/calibration/light_unknowns.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/check.h"
+
+namespace luxrig {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr int kRounds = 12;
+constexpr double kArrived = 1e-9;
+/// Student's t with so many degrees of freedom: a reading 6 standard errors off weighs a ninth.
+constexpr double kFreedom = 4;
+
+double weight_of(double surprise) { return std::min(1.0, (kFreedom + 1) / (kFreedom + surprise * surprise)); }
+
+}  // namespace
+
+LightUnknowns::LightUnknowns(LightSensitivity sensitivity, LightPriors priors)
+    : light_(std::move(sensitivity)), priors_(std::move(priors)) {
+  check(light_);
+  VectorXd sd(unknowns());
+  sd.head(fixtures()).setConstant(priors_.log_output);
+  for (Index j = 0; j < fixtures(); ++j) {
+    sd.segment(mount_at(j), 3).setConstant(priors_.position_m);
+    sd.segment(mount_at(j) + 3, 3).setConstant(priors_.angle_rad);
+  }
+  sd.segment(paint_at(0), materials()).setConstant(priors_.reflectance);
+  sd.tail(meters()) = priors_.log_meter;
+  prior_variance_ = sd.cwiseAbs2();
+  value_.setZero(unknowns());
+  taken_at_.setZero(kMountUnknowns * fixtures());
+  estimate();
+}
+
+void LightUnknowns::check(const LightSensitivity& sensitivity) const {
+  LUXRIG_CHECK(static_cast<Index>(sensitivity.mount.size()) == fixtures(), "{} mounts of {} fixtures",
+               sensitivity.mount.size(), fixtures());
+  LUXRIG_CHECK(sensitivity.lux.rows() == light_.lux.rows() && sensitivity.lux.cols() == light_.lux.cols() &&
+                   sensitivity.paint.size() == light_.paint.size(),
+               "another rig's light");
+  LUXRIG_CHECK(sensitivity.place.empty() || static_cast<Index>(sensitivity.place.size()) == light_.lux.rows(),
+               "{} places of {} receivers", sensitivity.place.size(), light_.lux.rows());
+}
+
+std::size_t LightUnknowns::place_of(std::size_t receiver) const {
+  return light_.place.empty() ? receiver : light_.place[receiver];
+}
+
+double LightUnknowns::light_and_slope(const LightQuery& query, double fixed_lx, VectorXd& slope) const {
+  slope.setZero(unknowns());
+  const auto r = static_cast<Index>(query.receiver);
+  double lux = 0;
+  for (Index j = 0; j < fixtures(); ++j) {
+    const double level = query.level[j];
+    if (level == 0) continue;
+    const auto mount = light_.mount[static_cast<std::size_t>(j)].row(r);
+    double of_lamp = light_.lux(r, j) + mount.dot(value_.segment(mount_at(j), kMountUnknowns) -
+                                                  taken_at_.segment(kMountUnknowns * j, kMountUnknowns));
+    for (Index p = 0; p < materials(); ++p)
+      of_lamp += light_.paint[static_cast<std::size_t>(p)](r, j) * value_[paint_at(p)];
+    const double full = level * std::exp(value_[j]);
+    lux += full * of_lamp;
+    slope[j] = full * of_lamp;
+    slope.segment(mount_at(j), kMountUnknowns) = full * mount.transpose();
+    for (Index p = 0; p < materials(); ++p)
+      slope[paint_at(p)] += full * light_.paint[static_cast<std::size_t>(p)](r, j);
+  }
+  if (!query.meter) return lux + fixed_lx;
+  const Index meter = meter_at(static_cast<Index>(*query.meter));
+  const double gain = std::exp(value_[meter]);
+  slope *= gain;
+  slope[meter] = gain * lux;
+  return gain * lux + fixed_lx;
+}
+
+double LightUnknowns::rest_covariance(const LightQuery& a, const LightQuery& b) const {
+  if (place_of(a.receiver) != place_of(b.receiver)) return 0;
+  const auto of_a = light_.lux.row(static_cast<Index>(a.receiver)).cwiseProduct(a.level.transpose());
+  const auto of_b = light_.lux.row(static_cast<Index>(b.receiver)).cwiseProduct(b.level.transpose());
+  return of_a.dot(of_b) * priors_.rest_share * priors_.rest_share;
+}
+
+void LightUnknowns::learn(std::span<const LightReading> readings) {
+  for (const LightReading& reading : readings) {
+    LUXRIG_CHECK(reading.level.size() == fixtures() && static_cast<Index>(reading.meter) < meters() &&
+                     static_cast<Index>(reading.receiver) < light_.lux.rows(),
+                 "a reading of meter {} at receiver {} under {} levels", reading.meter, reading.receiver,
+                 reading.level.size());
+    LUXRIG_CHECK(reading.standard_error_lx > 0, "a reading with an error of {} lx", reading.standard_error_lx);
+    readings_.push_back(reading);
+    asked_.push_back({reading.receiver, reading.level, reading.meter});
+  }
+  estimate();
+}
+
+void LightUnknowns::relinearise(LightSensitivity sensitivity) {
+  check(sensitivity);
+  light_ = std::move(sensitivity);
+  for (Index j = 0; j < fixtures(); ++j)
+    taken_at_.segment(kMountUnknowns * j, kMountUnknowns) = value_.segment(mount_at(j), kMountUnknowns);
+  estimate();
+}
+
+void LightUnknowns::estimate() {
+  const auto count = static_cast<Index>(readings_.size());
+  surprise_.assign(readings_.size(), 0);
+  slopes_.resize(count, unknowns());
+  MatrixXd rest(count, count);
+  for (Index a = 0; a < count; ++a)
+    for (Index b = 0; b <= a; ++b)
+      rest(a, b) = rest(b, a) = rest_covariance(asked_[static_cast<std::size_t>(a)], asked_[static_cast<std::size_t>(b)]);
+  VectorXd slope, off(count), variance(count);
+  for (int round = 0; round < kRounds && count > 0; ++round) {
+    for (Index k = 0; k < count; ++k) {
+      const LightReading& reading = readings_[static_cast<std::size_t>(k)];
+      off[k] = reading.lux - light_and_slope(asked_[static_cast<std::size_t>(k)], reading.fixed_lx, slope);
+      slopes_.row(k) = slope;
+      variance[k] = reading.standard_error_lx * reading.standard_error_lx /
+                    weight_of(surprise_[static_cast<std::size_t>(k)]);
+    }
+    off += slopes_ * value_;
+    MatrixXd innovation = slopes_ * prior_variance_.asDiagonal() * slopes_.transpose() + rest;
+    innovation.diagonal() += variance;
+    innovation_.compute(innovation);
+    explained_ = innovation_.solve(off);
+    const VectorXd step = prior_variance_.cwiseProduct(slopes_.transpose() * explained_) - value_;
+    // What of each reading is left to its noise.
+    for (Index k = 0; k < count; ++k)
+      surprise_[static_cast<std::size_t>(k)] =
+          variance[k] * explained_[k] / readings_[static_cast<std::size_t>(k)].standard_error_lx;
+    // Gains are logarithms: a step of 1 is a factor of e, and the linear model says nothing there.
+    value_ += step * std::min(1.0, 1 / std::max(1e-300, step.cwiseAbs().maxCoeff()));
+    if (step.cwiseAbs().maxCoeff() < kArrived) break;
+  }
+  mount_covariance_.clear();
+  for (Index j = 0; j < fixtures(); ++j) {
+    const Index first = mount_at(j);
+    MatrixXd covariance = prior_variance_.segment(first, kMountUnknowns).asDiagonal();
+    if (count > 0) {
+      const MatrixXd shared =
+          slopes_.middleCols(first, kMountUnknowns) * prior_variance_.segment(first, kMountUnknowns).asDiagonal();
+      covariance -= shared.transpose() * innovation_.solve(shared);
+    }
+    mount_covariance_.push_back(std::move(covariance));
+  }
+}
+
+MatrixXd LightUnknowns::shared_with_readings(std::span<const LightQuery> queries, const MatrixXd& slopes) const {
+  MatrixXd shared = slopes * prior_variance_.asDiagonal() * slopes_.transpose();
+  for (Index q = 0; q < shared.rows(); ++q)
+    for (Index k = 0; k < shared.cols(); ++k)
+      shared(q, k) += rest_covariance(queries[static_cast<std::size_t>(q)], asked_[static_cast<std::size_t>(k)]);
+  return shared;
+}
+
+MatrixXd LightUnknowns::covariance(std::span<const LightQuery> queries) const {
+  const auto count = static_cast<Index>(queries.size());
+  MatrixXd slopes(count, unknowns());
+  VectorXd slope;
+  for (Index q = 0; q < count; ++q) {
+    (void)light_and_slope(queries[static_cast<std::size_t>(q)], 0, slope);
+    slopes.row(q) = slope;
+  }
+  MatrixXd covariance = slopes * prior_variance_.asDiagonal() * slopes.transpose();
+  for (Index a = 0; a < count; ++a)
+    for (Index b = 0; b < count; ++b)
+      covariance(a, b) +=
+          rest_covariance(queries[static_cast<std::size_t>(a)], queries[static_cast<std::size_t>(b)]);
+  if (readings_.empty()) return covariance;
+  const MatrixXd shared = shared_with_readings(queries, slopes);
+  return covariance - shared * innovation_.solve(shared.transpose());
+}
+
+LightEstimate LightUnknowns::at(std::size_t receiver, const VectorXd& level) const {
+  const LightQuery query{receiver, level, {}};
+  VectorXd slope;
+  LightEstimate estimate;
+  estimate.lux = light_and_slope(query, 0, slope);
+  if (!readings_.empty())
+    for (std::size_t k = 0; k < readings_.size(); ++k)
+      estimate.lux += rest_covariance(query, asked_[k]) * explained_[static_cast<Index>(k)];
+  const auto [bent_lx, bent_variance] = of_bend(static_cast<Index>(receiver), level);
+  estimate.lux += bent_lx;
+  estimate.standard_error_lx = std::sqrt(std::max(0.0, covariance({&query, 1})(0, 0) + bent_variance));
+  return estimate;
+}
+
+std::pair<double, double> LightUnknowns::of_bend(Index receiver, const VectorXd& level) const {
+  double lux = 0, variance = 0;
+  if (light_.bend.empty()) return {lux, variance};
+  for (Index j = 0; j < fixtures(); ++j) {
+    if (level[j] == 0) continue;
+    using Square = Eigen::Matrix<double, kMountUnknowns, kMountUnknowns, Eigen::RowMajor>;
+    const Eigen::Matrix<double, 1, kMountUnknowns* kMountUnknowns> row =
+        light_.bend[static_cast<std::size_t>(j)].row(receiver);
+    const Square spread = Eigen::Map<const Square>(row.data()) * mount_covariance_[static_cast<std::size_t>(j)];
+    const double full = level[j] * std::exp(value_[j]);
+    lux += 0.5 * full * spread.trace();
+    variance += 0.5 * full * full * (spread * spread).trace();
+  }
+  return {lux, std::max(0.0, variance)};
+}
+
+double LightUnknowns::variance_of(Index unknown) const {
+  double variance = prior_variance_[unknown];
+  if (!readings_.empty()) {
+    const VectorXd shared = slopes_.col(unknown) * prior_variance_[unknown];
+    variance -= shared.dot(innovation_.solve(shared));
+  }
+  return std::max(0.0, variance);
+}
+
+double LightUnknowns::gain(std::size_t fixture) const { return std::exp(value_[static_cast<Index>(fixture)]); }
+
+double LightUnknowns::gain_standard_error(std::size_t fixture) const {
+  return gain(fixture) * std::sqrt(variance_of(static_cast<Index>(fixture)));
+}
+
+VectorXd LightUnknowns::mount(std::size_t fixture) const {
+  return value_.segment(mount_at(static_cast<Index>(fixture)), kMountUnknowns);
+}
+
+VectorXd LightUnknowns::mount_standard_error(std::size_t fixture) const {
+  return mount_covariance_[fixture].diagonal().cwiseMax(0).cwiseSqrt();
+}
+
+double LightUnknowns::paint(std::size_t material) const { return 1 + value_[paint_at(static_cast<Index>(material))]; }
+
+double LightUnknowns::paint_standard_error(std::size_t material) const {
+  return std::sqrt(variance_of(paint_at(static_cast<Index>(material))));
+}
+
+double LightUnknowns::meter_gain(std::size_t meter) const {
+  return std::exp(value_[meter_at(static_cast<Index>(meter))]);
+}
+
+double LightUnknowns::meter_gain_standard_error(std::size_t meter) const {
+  return meter_gain(meter) * std::sqrt(variance_of(meter_at(static_cast<Index>(meter))));
+}
+
+}  // namespace luxrig

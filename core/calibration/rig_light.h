@@ -1,0 +1,54 @@
+#pragma once
+/// A session's light, and what is not known of it, learnt from readings: LightUnknowns with the light's changes taken
+/// anew wherever a mount is found to be.
+
+#include <Eigen/Core>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/calibration/light_unknowns.h"
+#include "core/result.h"
+#include "core/tasks/session.h"
+
+namespace luxrig {
+
+/// What a careful technician's rig is off by: lamps by a fifth, mounts by 5 cm and 2° per axis, paint by a tenth.
+/// Luxmeters by half of their stated tolerance, and one more in the hand by 1 %.
+[[nodiscard]] LightPriors usual_priors(const Rig& rig);
+
+/// The instrument in the hand, in those priors.
+[[nodiscard]] inline std::size_t meter_in_hand(const Rig& rig) { return rig.luxmeters.size(); }
+
+class RigLight {
+ public:
+  /// Traces the light, and anew for each material (seconds). The session must outlive it.
+  [[nodiscard]] static Result<RigLight> of(const Session& session, const LightPriors& priors,
+                                           const ComputeOptions& options);
+
+  /// Adds readings, and takes the light's changes anew at the mounts found, until these stand still.
+  [[nodiscard]] Result<void> learn(std::span<const LightReading> readings);
+  [[nodiscard]] const LightUnknowns& known() const { return known_; }
+  /// The light as the rig file has it, at level 1: receivers (points, then luxmeters) × fixtures.
+  [[nodiscard]] Eigen::MatrixXd stated_lux() const;
+
+  /// Points for a meter in the hand, best first: after every lamp is read there one by one, the light at the goals under
+  /// `level` is known best, relative to what it is. At most `count`, none of `but`.
+  [[nodiscard]] std::vector<std::size_t> places_to_measure(const Eigen::VectorXd& level, std::size_t count,
+                                                           std::span<const std::size_t> but) const;
+
+ private:
+  RigLight(const Session& session, LightPriors priors, TransportMatrix light, std::vector<Eigen::MatrixXd> paint,
+           LightSensitivity sensitivity);
+
+  const Session* session_;
+  LightPriors priors_;
+  TransportMatrix light_;
+  std::vector<Eigen::MatrixXd> paint_;
+  LightUnknowns known_;
+};
+
+/// Standard error of a reading of a meter in the hand: it is never held twice at the same place, nor level.
+[[nodiscard]] double error_in_hand_lx(double lux);
+
+}  // namespace luxrig
