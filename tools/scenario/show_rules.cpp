@@ -26,6 +26,8 @@ constexpr double kCalledMet = 2;
 constexpr double kOffModel = 1.25;
 /// A fixture that hears again gets more light than meters asked for; a sample corrects that.
 constexpr double kHearsAgain_s = 15;
+/// Heads that have not turned for so long have arrived. A slower change is none.
+constexpr double kAtRest_s = 1, kStill_rad = 1e-4;
 constexpr double kLongestTurn_s = 30, kAfterDesk_s = 20;
 constexpr double kHandWithin_s = 15, kLevelStep = 0.002;
 
@@ -41,6 +43,16 @@ constexpr const char* kSentences[] = {
     "no lit beam meets a keep-out zone",
     "a daemon that ends in order leaves the safe look",
 };
+
+double turned_rad(const Joints& from, const Joints& to) {
+  return std::max(std::abs(to.pan_rad - from.pan_rad), std::abs(to.tilt_rad - from.tilt_rad));
+}
+
+double most_turned_rad(const std::vector<Joints>& from, const std::vector<Joints>& to) {
+  double most = 0;
+  for (std::size_t f = 0; f < std::min(from.size(), to.size()); ++f) most = std::max(most, turned_rad(from[f], to[f]));
+  return most;
+}
 
 double goal_or_limit_lx(const Rig& rig, std::size_t point, const ShowStatus& status) {
   const auto goal = status.points[point].goal_lx;
@@ -95,6 +107,8 @@ void ShowRules::blackout(double at_s, bool on) {
   blackout_s_ = at_s;
   dark_ = on;
   dark_joints_.clear();
+  // Heads that were at rest have no way to finish.
+  if (on && (!turned_s_ || at_s - *turned_s_ > kAtRest_s)) dark_joints_ = joints_;
 }
 
 void ShowRules::lamps_are_stuck(double at_s, bool stuck) { pause(lamps_pause_, at_s, stuck); }
@@ -247,6 +261,8 @@ void ShowRules::look(double at_s, const Instant& instant, const std::vector<bool
   before_ = instant.level;
   before_s_ = at_s;
   if (!dark_) lit_lux_ = instant.lux;
+  if (joints_.empty() || most_turned_rad(joints_, instant.joints) > kStill_rad) turned_s_ = at_s;
+  joints_ = instant.joints;
 }
 
 void ShowRules::look_without_daemon(double at_s, const Instant& instant, bool guarded) {
@@ -362,11 +378,9 @@ void ShowRules::look_at_blackout(double at_s, const Instant& instant) {
   }
   if (dark_joints_.empty() && at_s - *dark_since_s_ > 1 + slack_.time_s) dark_joints_ = instant.joints;
   for (std::size_t f = 0; f < dark_joints_.size(); ++f) {
-    const double turned_rad = std::max(std::abs(instant.joints[f].pan_rad - dark_joints_[f].pan_rad),
-                                       std::abs(instant.joints[f].tilt_rad - dark_joints_[f].tilt_rad));
-    if (turned_rad > rad_from_deg(1))
-      broken(dark, at_s,
-             fmt::format("{} turns by {:.1f}° in a blackout", rig_.fixtures[f].name, deg_from_rad(turned_rad)));
+    const double rad = turned_rad(dark_joints_[f], instant.joints[f]);
+    if (rad > rad_from_deg(1))
+      broken(dark, at_s, fmt::format("{} turns by {:.1f}° in a blackout", rig_.fixtures[f].name, deg_from_rad(rad)));
   }
 }
 

@@ -124,7 +124,9 @@ class ShowRules {
   std::vector<double> before_;           ///< levels of the last instant
   double before_s_ = 0;                  ///< that instant
   std::vector<double> last_sent_s_;      ///< per bus
-  std::vector<Joints> dark_joints_;      ///< of heads when it went dark
+  std::vector<Joints> dark_joints_;      ///< of heads when it went dark, or when they had arrived
+  std::vector<Joints> joints_;           ///< at the last look
+  std::optional<double> turned_s_;       ///< when a head last turned
   std::vector<double> lit_lux_;          ///< per point: true light when it last was not dark
   std::set<std::string> bypassed_;
   struct Lie {

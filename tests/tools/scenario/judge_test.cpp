@@ -234,6 +234,27 @@ TEST_F(RulesTest, ABlackoutInTheDaemonsLastTickSurvives) {
   EXPECT_EQ(broken(), "what was acknowledged survives a restart: the blackout is gone after a restart\n");
 }
 
+// A fast head may have arrived before anybody looks again.
+TEST_F(RulesTest, AHeadAtRestDoesNotTurnWithTheBlackout) {
+  show.now.joints[0] = {1, 0.5, 0};
+  look(100);
+  rules.blackout(at_s, true);
+  show.now.joints[0] = {};
+  look(10);
+  EXPECT_NE(broken().find("turns by 57"), std::string::npos) << broken();
+}
+
+TEST_F(RulesTest, AHeadOnItsWayMayArriveInTheDark) {
+  for (int k = 0; k < 100; ++k) {
+    show.now.joints[0].pan_rad = 0.01 * k;
+    look();
+  }
+  rules.blackout(at_s, true);
+  show.now.joints[0].pan_rad = 1.2;
+  look(100);
+  EXPECT_EQ(broken(), "");
+}
+
 // Only the point where it hangs is excused.
 TEST_F(RulesTest, AMeterThatLiesExcusesNoLimitElsewhere) {
   const std::size_t point = *show.rig.luxmeters[0].point;
