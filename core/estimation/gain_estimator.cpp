@@ -172,6 +172,23 @@ void GainEstimator::knows_more() {
   knowledge_ = ++newest;
 }
 
+VectorXd GainEstimator::contradiction_of_lessons(const MatrixXd& covariance, const VectorXd& stated_lux,
+                                                 const VectorXd& surprise) const {
+  VectorXd contradiction = VectorXd::Ones(meter_.rows());
+  for (Index i = 0; i < contradiction.size(); ++i) {
+    std::vector<Index> own;
+    for (std::size_t k = 0; k < evidence_.size(); ++k)
+      if (static_cast<Index>(evidence_[k].luxmeter) == i) own.push_back(static_cast<Index>(k));
+    if (own.size() < 2) continue;
+    const Eigen::LDLT<MatrixXd> block(covariance(own, own));
+    const VectorXd of_meter = surprise(own), scale = stated_lux(own), weighted = block.solve(of_meter);
+    const double explained = std::pow(scale.dot(weighted), 2) / scale.dot(block.solve(scale));
+    const double chi_squared = of_meter.dot(weighted) - explained;
+    contradiction[i] = std::sqrt(std::max(1.0, chi_squared / static_cast<double>(own.size() - 1)));
+  }
+  return contradiction;
+}
+
 void GainEstimator::estimate(Time now) {
   knows_more();
   const Index columns = meter_.cols(), meters = meter_.rows(), count = static_cast<Index>(evidence_.size());
@@ -209,6 +226,7 @@ void GainEstimator::estimate(Time now) {
   }
   innovation_.compute(total);
   const VectorXd weight = innovation_.solve(surprise);
+  const VectorXd contradiction = contradiction_of_lessons(total, light.rowwise().sum(), surprise);
   const double gain_variance = prior_gain_sd_ * prior_gain_sd_;
   for (Index j = 0; j < columns; ++j) {
     const VectorXd with_gain = gain_variance * light.col(j);
@@ -221,7 +239,7 @@ void GainEstimator::estimate(Time now) {
           with_factor[k] += local_variance(i, j) * light(k, j);
       factor_(i, j) = std::clamp(prior_gain_ + with_factor.dot(weight), gain_min_ / local_, gain_max_ * local_);
       const double variance = gain_variance + local_variance(i, j) - with_factor.dot(innovation_.solve(with_factor));
-      factor_error_(i, j) = std::sqrt(std::max(0.0, variance));
+      factor_error_(i, j) = contradiction[i] * std::sqrt(std::max(0.0, variance));
     }
   }
 }

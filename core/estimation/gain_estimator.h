@@ -260,6 +260,12 @@ class GainEstimator {
   [[nodiscard]] double max_without_fixtures(const Row& row, Time now) const;
   void learn(const LuxReading& reading, const Eigen::VectorXd& level);
   void estimate(Time now);
+  /// Per luxmeter, at least 1: how much its lessons differ from each other beyond their stated errors, whatever factor
+  /// they have in common (Birge ratio: square root of χ² per degree of freedom). Some were wrong then: a lamp did not
+  /// respond, or somebody shaded the meter. covariance: of the evidence; the others: per piece of it [lx].
+  [[nodiscard]] Eigen::VectorXd contradiction_of_lessons(const Eigen::MatrixXd& covariance,
+                                                         const Eigen::VectorXd& stated_lux,
+                                                         const Eigen::VectorXd& surprise) const;
 
   Eigen::MatrixXd point_, point_error_, meter_, meter_error_;  ///< a column per fixture, then one for daylight, if any
   std::vector<Luxmeter> luxmeters_;

@@ -208,6 +208,52 @@ TEST(GainEstimator, KeepsALimitByAHigherReadingThatItDoesNotBelieve) {
   EXPECT_GT(tried, 20);
 }
 
+// A lamp does not respond, and what its meter shows teaches nonsense about it. Then it does, and the true lessons stand
+// beside the wrong ones: what their mean says is not certain.
+TEST(GainEstimator, KeepsALimitByLessonsThatContradictEachOther) {
+  int tried = 0, over = 0;
+  double most = 0;
+  for (unsigned seed = 0; seed < 300; ++seed) {
+    World world(seed);
+    GainEstimator estimator(world.rig, world.model);
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> uniform;
+    Index deaf = 0;
+    world.model.meter_lux_per_level.row(0).maxCoeff(&deaf);
+    const auto j = static_cast<std::size_t>(deaf);
+    int believed = 0;
+    const auto show = [&](double time_s, const std::vector<double>& asked, const std::vector<double>& given) {
+      LuxReading reading = world.readings(given, at_s(time_s))[0];
+      estimator.shows(reading, asked);
+      believed += estimator.update(at_s(time_s), std::span(&reading, 1), asked).front().believed;
+    };
+    const std::vector<double> first = world.plan;
+    for (int k = 0; k < 4; ++k) {
+      std::vector<double> asked = first, given = first;
+      asked[j] *= 1.05 + 0.15 * k;
+      given[j] *= 0.9;
+      show(1 + k, asked, given);
+    }
+    for (int k = 0; k < 3; ++k) {
+      std::vector<double> asked = first;
+      asked[j] *= 0.8 + 0.2 * uniform(random);
+      show(10 + k, asked, asked);
+    }
+    if (believed < 5) continue;
+    ++tried;
+    for (int k = 0; k < 20; ++k) {
+      std::vector<double> level = first;
+      for (double& each : level) each = std::min(1.0, each * (0.5 + uniform(random)));
+      const double share = world.true_lux(level)[0] / estimator.max_lux_at_point(0, level, at_s(13));
+      most = std::max(most, share);
+      over += share > 1;
+    }
+  }
+  std::printf("%d rigs, %d of %d levels beyond the bound, most %.3f of it\n", tried, over, 20 * tried, most);
+  EXPECT_GT(tried, 100);
+  EXPECT_EQ(over, 0);
+}
+
 // Its lessons from before it froze stay. The value it froze at during a fade teaches nothing, however near it is.
 TEST(GainEstimator, LearnsNothingFromAMeterThatFreezesDuringAFade) {
   World world(3);
