@@ -54,8 +54,7 @@ void differences(const MatrixXd& lux, const VectorXd& step, MatrixXd& slope, Mat
   for (Index a = 0; a < kMountUnknowns; ++a)
     for (Index b = 0; b < a; ++b, pair += 2) {
       // f(a+b) - f(a-b) = 2 step_b (f_b + step_a f_ab) + third order
-      const VectorXd mixed =
-          ((lux.col(pair) - lux.col(pair + 1)) / (2 * step[b]) - slope.col(b)) / step[a];
+      const VectorXd mixed = ((lux.col(pair) - lux.col(pair + 1)) / (2 * step[b]) - slope.col(b)) / step[a];
       bend.col(a * kMountUnknowns + b) = mixed;
       bend.col(b * kMountUnknowns + a) = mixed;
     }
@@ -63,23 +62,13 @@ void differences(const MatrixXd& lux, const VectorXd& step, MatrixXd& slope, Mat
 
 }  // namespace
 
-Pose displaced_mount(const Pose& world_from_mount, const VectorXd& off) {
-  LUXRIG_CHECK(off.size() == kMountUnknowns, "{} unknowns of a mount", off.size());
-  Pose pose = world_from_mount;
-  pose.translation_m += off.head<3>();
-  const Vec3 turn_rad = off.tail<3>();
-  const double angle_rad = turn_rad.norm();
-  if (angle_rad > 0) pose.rotation = Eigen::AngleAxisd(angle_rad, turn_rad / angle_rad) * pose.rotation;
-  return pose;
-}
-
 Result<LightSensitivity> mount_sensitivity(const Rig& rig, const RayScene& rays, const TransportMatrix& light,
                                            const LightPriors& priors, std::span<const VectorXd> mounts) {
   const auto fixtures = static_cast<Index>(rig.fixtures.size());
   const std::vector<Receiver> receivers = receivers_of(rig);
-  LUXRIG_CHECK(light.lux_per_level.rows() == static_cast<Index>(receivers.size()) &&
-                   light.lux_per_level.cols() >= fixtures,
-               "light {} × {}", light.lux_per_level.rows(), light.lux_per_level.cols());
+  LUXRIG_CHECK(
+      light.lux_per_level.rows() == static_cast<Index>(receivers.size()) && light.lux_per_level.cols() >= fixtures,
+      "light {} × {}", light.lux_per_level.rows(), light.lux_per_level.cols());
   LUXRIG_CHECK(mounts.empty() || static_cast<Index>(mounts.size()) == fixtures, "{} mounts", mounts.size());
   LightSensitivity sensitivity;
   sensitivity.lux = light.lux_per_level.leftCols(fixtures);
@@ -92,16 +81,16 @@ Result<LightSensitivity> mount_sensitivity(const Rig& rig, const RayScene& rays,
   for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
     const Fixture& fixture = rig.fixtures[f];
     const VectorXd at = mounts.empty() ? VectorXd(VectorXd::Zero(kMountUnknowns)) : mounts[f];
-    const Displacements displaced(at, priors);
+    const Displacements moves(at, priors);
     std::vector<Emitter> emitters;
-    for (const VectorXd& off : displaced.off)
+    for (const VectorXd& off : moves.off)
       emitters.push_back(emitter_of(rig.luminaires[fixture.luminaire],
-                                    world_from_lamp(displaced_mount(fixture.world_from_mount, off), fixture.joints,
-                                                    fixture.roll_rad),
+                                    world_from_lamp(displaced(fixture.world_from_mount, off.head<3>(), off.tail<3>()),
+                                                    fixture.joints, fixture.roll_rad),
                                     fixture.joints.beam_rad));
     const auto lux = direct->evaluate(receivers, emitters, {});
     if (!lux) return tl::unexpected(lux.error());
-    differences(lux->lux_per_level, displaced.step, sensitivity.mount[f], sensitivity.bend[f]);
+    differences(lux->lux_per_level, moves.step, sensitivity.mount[f], sensitivity.bend[f]);
     const auto j = static_cast<Index>(f);
     if (!mounts.empty())
       sensitivity.lux.col(j) =

@@ -19,9 +19,6 @@
 
 namespace luxrig {
 
-/// world_from_mount of this fixture where it hangs if it is off so far (kMountUnknowns entries, as in LightUnknowns).
-[[nodiscard]] Pose displaced_mount(const Pose& world_from_mount, const Eigen::VectorXd& off);
-
 /// `lux`, `mount` and `bend` at mounts that are off by `mounts` (one per fixture; empty = as in the rig file).
 /// light: of all_emitters_of(rig) at receivers_of(rig), as in the rig file.
 [[nodiscard]] Result<LightSensitivity> mount_sensitivity(const Rig& rig, const RayScene& rays,

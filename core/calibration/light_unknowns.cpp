@@ -115,15 +115,16 @@ void LightUnknowns::estimate() {
   MatrixXd rest(count, count);
   for (Index a = 0; a < count; ++a)
     for (Index b = 0; b <= a; ++b)
-      rest(a, b) = rest(b, a) = rest_covariance(asked_[static_cast<std::size_t>(a)], asked_[static_cast<std::size_t>(b)]);
+      rest(a, b) = rest(b, a) =
+          rest_covariance(asked_[static_cast<std::size_t>(a)], asked_[static_cast<std::size_t>(b)]);
   VectorXd slope, off(count), variance(count);
   for (int round = 0; round < kRounds && count > 0; ++round) {
     for (Index k = 0; k < count; ++k) {
       const LightReading& reading = readings_[static_cast<std::size_t>(k)];
       off[k] = reading.lux - light_and_slope(asked_[static_cast<std::size_t>(k)], reading.fixed_lx, slope);
       slopes_.row(k) = slope;
-      variance[k] = reading.standard_error_lx * reading.standard_error_lx /
-                    weight_of(surprise_[static_cast<std::size_t>(k)]);
+      variance[k] =
+          reading.standard_error_lx * reading.standard_error_lx / weight_of(surprise_[static_cast<std::size_t>(k)]);
     }
     off += slopes_ * value_;
     MatrixXd innovation = slopes_ * prior_variance_.asDiagonal() * slopes_.transpose() + rest;
@@ -171,8 +172,7 @@ MatrixXd LightUnknowns::covariance(std::span<const LightQuery> queries) const {
   MatrixXd covariance = slopes * prior_variance_.asDiagonal() * slopes.transpose();
   for (Index a = 0; a < count; ++a)
     for (Index b = 0; b < count; ++b)
-      covariance(a, b) +=
-          rest_covariance(queries[static_cast<std::size_t>(a)], queries[static_cast<std::size_t>(b)]);
+      covariance(a, b) += rest_covariance(queries[static_cast<std::size_t>(a)], queries[static_cast<std::size_t>(b)]);
   if (readings_.empty()) return covariance;
   const MatrixXd shared = shared_with_readings(queries, slopes);
   return covariance - shared * innovation_.solve(shared.transpose());

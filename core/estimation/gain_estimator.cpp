@@ -86,8 +86,15 @@ GainEstimator::GainEstimator(const Rig& rig, const LightModel& model)
   local_ = 1 / (1 - margin);
   doubted_.setConstant(meters, meter_.cols(), false);
   prior_gain_ = std::clamp(1.0, gain_min_, gain_max_);
-  prior_gain_sd_ = (gain_max_ - gain_min_) / 4;
-  prior_local_sd_ = std::max(kMinLocalSd, margin / 3);
+  prior_gain_sd_.setConstant(meter_.cols(), (gain_max_ - gain_min_) / 4);
+  prior_local_sd_.setConstant(meter_.cols(), std::max(kMinLocalSd, margin / 3));
+  const auto state = [&](const VectorXd& stated, RowVectorXd& sd, const char* what) {
+    if (stated.size() == 0) return;
+    LUXRIG_CHECK(stated.size() == fixtures, "{} of {} fixtures, the rig has {}", what, stated.size(), fixtures);
+    sd.head(fixtures) = stated.transpose();
+  };
+  state(model.gain_sd, prior_gain_sd_, "gain_sd");
+  state(model.local_sd, prior_local_sd_, "local_sd");
   estimate(Time{});
 }
 
@@ -116,7 +123,7 @@ GainEstimator::Row GainEstimator::row_of_point(std::size_t point) const {
   if (confirmed(point)) {
     row = row_of_meter(*meter_of_point_[point]);
   } else {
-    const RowVectorXd error = (gain_error_.array().square() + prior_local_sd_ * prior_local_sd_).sqrt().transpose();
+    const RowVectorXd error = (gain_error_.array().square().transpose() + prior_local_sd_.array().square()).sqrt();
     row = {point_.row(i), point_error_.row(i), gain_.transpose(), error, std::nullopt, 0};
   }
   row.unseen_lx = unseen_lux(point, row);
@@ -161,8 +168,8 @@ double GainEstimator::covariance(const Row& one, const VectorXd& one_level, cons
   double sum = 0;
   for (Index j = 0; j < one_level.size(); ++j) {
     const double levels = one_level[j] * other.level[j], lux = one.lux_per_level[j] * meter_(i, j);
-    sum += levels * lux * prior_gain_sd_ * prior_gain_sd_;
-    if (same) sum += levels * (lux * prior_local_sd_ * prior_local_sd_ + one.standard_error[j] * one.standard_error[j]);
+    sum += levels * lux * prior_gain_sd_[j] * prior_gain_sd_[j];
+    if (same) sum += levels * (lux * prior_local_sd_[j] * prior_local_sd_[j] + one.standard_error[j] * one.standard_error[j]);
   }
   return sum;
 }
@@ -193,13 +200,13 @@ void GainEstimator::estimate(Time now) {
   knows_more();
   const Index columns = meter_.cols(), meters = meter_.rows(), count = static_cast<Index>(evidence_.size());
   gain_ = VectorXd::Constant(columns, prior_gain_);
-  gain_error_ = VectorXd::Constant(columns, prior_gain_sd_);
+  gain_error_ = prior_gain_sd_.transpose();
   factor_ = MatrixXd::Constant(meters, columns, prior_gain_);
-  MatrixXd local_variance = MatrixXd::Constant(meters, columns, prior_local_sd_ * prior_local_sd_);
+  MatrixXd local_variance = prior_local_sd_.cwiseAbs2().replicate(meters, 1);
   for (Index i = 0; i < meters; ++i)
     for (Index j = 0; j < columns; ++j)
       if (meter_(i, j) > 0) local_variance(i, j) += std::pow(meter_error_(i, j) / meter_(i, j), 2);
-  factor_error_ = (local_variance.array() + prior_gain_sd_ * prior_gain_sd_).sqrt();
+  factor_error_ = (local_variance.rowwise() + prior_gain_sd_.cwiseAbs2()).cwiseSqrt();
   if (count == 0) return;
 
   MatrixXd light(count, columns);  // H: light of each fixture at each reading, at rated output
@@ -227,8 +234,8 @@ void GainEstimator::estimate(Time now) {
   innovation_.compute(total);
   const VectorXd weight = innovation_.solve(surprise);
   const VectorXd contradiction = contradiction_of_lessons(total, light.rowwise().sum(), surprise);
-  const double gain_variance = prior_gain_sd_ * prior_gain_sd_;
   for (Index j = 0; j < columns; ++j) {
+    const double gain_variance = prior_gain_sd_[j] * prior_gain_sd_[j];
     const VectorXd with_gain = gain_variance * light.col(j);
     gain_[j] = std::clamp(prior_gain_ + with_gain.dot(weight), gain_min_, gain_max_);
     gain_error_[j] = std::sqrt(std::max(0.0, gain_variance - with_gain.dot(innovation_.solve(with_gain))));
@@ -251,7 +258,7 @@ Prediction GainEstimator::predict(const Row& row, const VectorXd& level) const {
   for (Index j = 0; j < level.size(); ++j)
     variance += level[j] * level[j] *
                 (row.lux_per_level[j] * row.lux_per_level[j] *
-                     (prior_gain_sd_ * prior_gain_sd_ + prior_local_sd_ * prior_local_sd_) +
+                     (prior_gain_sd_[j] * prior_gain_sd_[j] + prior_local_sd_[j] * prior_local_sd_[j]) +
                  row.standard_error[j] * row.standard_error[j]);
   if (!evidence_.empty()) {
     VectorXd shared(static_cast<Index>(evidence_.size()));

@@ -6,7 +6,7 @@
 ///   reading_i = Σ_j M_ij · level_j · x_ij + noise      x_ij = g_j + e_ij
 /// g_j: true output over rated of fixture j, prior 1 ± a quarter of (gain_max − gain_min).
 /// e_ij: error at meter i alone (pose, reflectance), prior 0 ± a third of the rig's open_loop_margin (at least 2 %),
-/// combined with the transport's standard error. Readings of one meter at different levels share e_ij, so repeating a
+/// combined with the transport's standard error. A calibrated LightModel states both for each fixture instead. Readings of one meter at different levels share e_ij, so repeating a
 /// reading does not feign certainty. Hard bounds: g in [gain_min, gain_max], and the model without g correct at every
 /// point to within a factor of 1/(1 − open_loop_margin) either way.
 ///
@@ -279,7 +279,8 @@ class GainEstimator {
   std::vector<std::size_t> housing_;    ///< per fixture: the first of those that change together
   double gain_min_ = 0, gain_max_ = 1;
   double local_ = 1;  ///< 1/(1 − open_loop_margin)
-  double prior_gain_ = 1, prior_gain_sd_ = 0, prior_local_sd_ = 0;
+  double prior_gain_ = 1;
+  Eigen::RowVectorXd prior_gain_sd_, prior_local_sd_;  ///< per column
 
   std::vector<std::optional<Lost>> lost_;  ///< per fixture; may be empty
   std::vector<std::uint8_t> watched_;      ///< per luxmeter; may be empty

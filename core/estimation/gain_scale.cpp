@@ -58,13 +58,13 @@ std::optional<GainEstimator::CommonScale> GainEstimator::common_scale(std::span<
       const double curve =
           j < fixtures() && at[j] > 0 ? kCurveError / 2 * std::min(kFarthestStep, std::abs(std::log(at[j]))) : 0;
       alone[k] +=
-          share(k, j) * share(k, j) * (prior_local_sd_ * prior_local_sd_ + transport * transport + curve * curve);
+          share(k, j) * share(k, j) * (prior_local_sd_[j] * prior_local_sd_[j] + transport * transport + curve * curve);
     }
   }
   const auto meters = static_cast<Index>(log_ratio.size());
   if (meters < 2) return std::nullopt;
   const VectorXd mean_share = share.topRows(meters).colwise().mean().transpose();
-  const double shared = prior_gain_sd_ * prior_gain_sd_ * mean_share.squaredNorm();
+  const double shared = prior_gain_sd_.transpose().cwiseProduct(mean_share).squaredNorm();
   const double count = static_cast<double>(meters);
   // Variance of the mean, times π/2 for the median of normal errors.
   const double variance = 0.5 * static_cast<double>(EIGEN_PI) * (alone.head(meters).sum() / (count * count) + shared);

@@ -150,38 +150,6 @@ double fade_share(FadeCurve curve, double x) {
   return curve == FadeCurve::s_curve ? smooth_step(x) : x;
 }
 
-double level_from_drive(DimmerCurve curve, double drive) {
-  drive = clamped_share(drive);
-  switch (curve) {
-    case DimmerCurve::square:
-      return drive * drive;
-    case DimmerCurve::s_curve:
-      return smooth_step(drive);
-    case DimmerCurve::linear:
-      break;
-  }
-  return drive;
-}
-
-double drive_from_level(DimmerCurve curve, double level) {
-  level = clamped_share(level);
-  switch (curve) {
-    case DimmerCurve::square:
-      return std::sqrt(level);
-    case DimmerCurve::s_curve: {
-      // y = 3x² − 2x³ has the root x = 1/2 − sin(asin(1 − 2y) / 3). With y = sin²(a/2) that becomes
-      // sin²(a/6) + √3/2 sin(a/3), which loses no digits for small y as the textbook form does.
-      if (level >= 1) return 1;  // the sum below rounds to 1 − 1e-16 there
-      const double third = 2.0 / 3.0 * std::asin(std::sqrt(level));
-      const double half_sine = std::sin(third / 2);
-      return std::min(half_sine * half_sine + std::sqrt(0.75) * std::sin(third), 1.0);
-    }
-    case DimmerCurve::linear:
-      break;
-  }
-  return level;
-}
-
 std::vector<std::uint8_t> switched_fixtures(const Rig& rig) {
   std::vector<std::uint8_t> switched;
   for (const Fixture& fixture : rig.fixtures) switched.push_back(fixture.switched ? 1 : 0);

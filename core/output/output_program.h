@@ -16,10 +16,6 @@ namespace luxrig {
 /// Share of a fade done, 0…1, at share `x` of its time (clamped): linear x, or s-curve 3x² − 2x³.
 [[nodiscard]] double fade_share(FadeCurve curve, double x);
 
-/// drive <-> level of a maker's nominal curve. Both 0…1, strictly monotone, exact at 0 and 1.
-[[nodiscard]] double level_from_drive(DimmerCurve curve, double drive);
-[[nodiscard]] double drive_from_level(DimmerCurve curve, double level);
-
 /// Cost of taking away a lamp's light: 1 for the lamp, plus per_level_squared · level² for the goals that it lights
 /// (the sum of the squares of its shares of each goal). Emitters of one housing dim together, so that its colour stays.
 /// Either vector may be empty: no goals, no housings.

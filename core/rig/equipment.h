@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/photometry/files/lamp_tilt.h"
@@ -42,6 +43,10 @@ struct Luminaire {
 /// drive (0…1, as sent) -> level (0…1, share of rated flux), as the maker states it.
 enum class DimmerCurve { linear, square, s_curve };
 
+/// Level by the maker's curve -> share of its full light, both strictly ascending within 0…1, without 0, the last of at
+/// least two (1, 1). Empty = the maker's curve is right.
+using MeasuredCurve = std::vector<std::pair<double, double>>;
+
 struct Personality;
 
 /// For a fixture whose slots come from its maker's file.
@@ -73,6 +78,7 @@ struct Fixture {
   std::optional<AxesPatch> axes{};    ///< if none, pan and tilt are slots of `patch`
   std::optional<FixtureMode> mode{};  ///< if it has a personality
   DimmerCurve dimmer_curve = DimmerCurve::linear;
+  MeasuredCurve measured_curve{};    ///< by a calibration; over dimmer_curve
   bool switched = false;             ///< on or off: its level is 0 or 1, nothing between (a relay, a contactor)
   double max_level = 1.0;            ///< 0…1; its output never exceeds it
   std::optional<double> safe_level;  ///< overrides [safe] level

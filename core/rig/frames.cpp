@@ -26,6 +26,14 @@ std::optional<double> nearest_image(double angle_rad, double from_rad, double mi
 
 }  // namespace
 
+Pose displaced(const Pose& world_from_mount, const Vec3& offset_world_m, const Vec3& turn_world_rad) {
+  Pose pose = world_from_mount;
+  pose.translation_m += offset_world_m;
+  const double angle_rad = turn_world_rad.norm();
+  if (angle_rad > 0) pose.rotation = Eigen::AngleAxisd(angle_rad, turn_world_rad / angle_rad) * pose.rotation;
+  return pose;
+}
+
 Pose world_from_lamp(const Pose& world_from_mount, const Joints& joints, double roll_rad) {
   const Mat3 mount_from_lamp =
       (Eigen::AngleAxisd(joints.pan_rad, Vec3::UnitZ()) * Eigen::AngleAxisd(joints.tilt_rad, Vec3::UnitX()) *

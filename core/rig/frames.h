@@ -43,6 +43,10 @@ struct JointRange {
 /// Pose of the lamp of a head at the given joint angles.
 [[nodiscard]] Pose world_from_lamp(const Pose& world_from_mount, const Joints& joints, double roll_rad = 0);
 
+/// A mount that hangs off its place: moved by offset_world_m, and turned in its own place about the axis turn_world_rad by
+/// its length.
+[[nodiscard]] Pose displaced(const Pose& world_from_mount, const Vec3& offset_world_m, const Vec3& turn_world_rad);
+
 /// Joint angles within range that point the beam along direction_world, which must not be zero and need not be unit. Of
 /// several solutions, the one whose larger joint movement from `from` is least. nullopt if out of reach. Straight down
 /// keeps the present pan. The zoom stays.

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/geometry.h"
@@ -42,6 +43,8 @@ struct SceneSpec {
   Vec3 default_reflectance_rgb = Vec3::Constant(0.5);  ///< if neither a rule nor the file gives one
   std::vector<ReflectanceRule> reflectances;           ///< first match wins, before the file's own colour
   std::vector<SceneObject> objects;
+  /// By a calibration: true over stated reflectance of materials, by their names.
+  std::vector<std::pair<std::string, double>> paint{};
   FilePosition in_file;
 };
 

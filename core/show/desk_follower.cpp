@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/check.h"
+#include "core/output/dimming.h"
 #include "core/output/output_program.h"
 
 namespace luxrig {
@@ -124,6 +125,8 @@ bool DeskFollower::take_values(const DeskFrame& frame, const PresentLight& prese
     const auto i = static_cast<std::size_t>(found - settings_.fixtures.begin());
     blend_.desk_has[i] = 1;
     blend_.desk_level[i] = level_from_drive(settings_.dimmer_curve[i], command.drive);
+    if (!settings_.measured_curve.empty())
+      blend_.desk_level[i] = share_at_level(settings_.measured_curve[i], blend_.desk_level[i]);
     if (!settings_.desk_may_turn || !command.joints) continue;
     const Joints own = present.own_joints[command.fixture];
     if (settings_.rules.mode != DeskMode::merge) {

@@ -23,6 +23,7 @@ struct DeskFollowerSettings {
   DeskRules rules;
   std::vector<std::size_t> fixtures;      ///< of the part, ascending
   std::vector<DimmerCurve> dimmer_curve;  ///< per fixture; converts a desk's drive to a level
+  std::vector<MeasuredCurve> measured_curve{};  ///< the same; empty = nothing is measured
   std::vector<Joints> joints;             ///< per fixture
   /// The model's limits hold for heads as Luxrig aims them. Where there are limits, a desk cannot turn heads.
   bool desk_may_turn = true;

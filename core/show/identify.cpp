@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "core/output/dimming.h"
 #include "core/output/output_program.h"
 
 namespace luxrig {
@@ -28,7 +29,7 @@ IdentifyPattern::IdentifyPattern(const Rig& rig, std::vector<std::size_t> fixtur
   for (const std::size_t f : fixtures_) {
     const Fixture& fixture = rig.fixtures[f];
     brightest = std::max(brightest, present_level[f]);
-    bright_drive_.push_back(drive_from_level(fixture.dimmer_curve, std::max(kMinBright, present_level[f])));
+    bright_drive_.push_back(drive_for(fixture, std::max(kMinBright, present_level[f])));
     const Joints at = present_joints[f];
     joints_.push_back(at);
     turns_ = turns_ || (may_turn && fixture.moves);

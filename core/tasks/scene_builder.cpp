@@ -148,6 +148,10 @@ class Builder {
         scene_.warnings.push_back("material '" + material.name + "': reflectance above 0.95 is taken as 0.95");
       }
     }
+    for (Material& material : part.materials)
+      for (const auto& [name, ratio] : rig_.scene.paint)
+        if (name == material.name)
+          material.reflectance_rgb = (ratio * material.reflectance_rgb).cwiseMin(kMaxReflectance);
   }
 
   void warn_of_idle_rules() {

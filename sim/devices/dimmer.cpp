@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/output/dimming.h"
 #include "core/output/output_program.h"
 #include "sim/devices/lag.h"
 

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "core/output/dimming.h"
 #include "sim/in_process_rig.h"
 #include "tests/promises/promises.h"
 #include "tests/scenarios/hall.h"

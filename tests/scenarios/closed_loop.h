@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "core/output/dimming.h"
 #include "sim/in_process_rig.h"
 #include "tests/scenarios/hall.h"
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "core/output/dimming.h"
 #include "tools/luxrigd/scheduling.h"
 #include "tools/process/clock.h"
 
@@ -161,7 +162,7 @@ void BusThread::write(Time at) {
   }
   return_.apply(at, program_, dark || program_.blackout, levels_);
   for (LevelCommand& command : level_commands_) {
-    command.drive = drive_from_level(rig_.fixtures[command.fixture].dimmer_curve, levels_[command.fixture]);
+    command.drive = drive_for(rig_.fixtures[command.fixture], levels_[command.fixture]);
   }
   if (program_.revision != 0) {
     program_.joints_at(at, joints_);

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "core/output/dimming.h"
 #include "core/output/output_program.h"
 #include "tools/luxrigd/state/journal.h"
 #include "tools/luxrigd/state/light_store.h"
@@ -201,7 +202,7 @@ class LiveVenue final : public Venue {
           faults().find(name, sim::FaultKind::lamp_failure) || faults().find(name, sim::FaultKind::unpowered);
       instant.level[f] = out && f < status_.fixtures.size()
                              ? status_.fixtures[f].level
-                             : level_from_drive(rig_.fixtures[f].dimmer_curve, drives[f]);
+                             : level_at(rig_.fixtures[f], drives[f]);
     }
     for (std::size_t b = 0; b < sent.size(); ++b) sent[b] = sent_now_[b];
     std::fill(sent_now_.begin(), sent_now_.end(), false);

@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "core/output/dimming.h"
 #include "core/output/output_program.h"
 #include "tools/process/files.h"
 #include "tools/scenario/judge.h"
@@ -383,7 +384,7 @@ class Show {
   void desk_sends(const Event& event, bool on) {
     for (const std::size_t f : event.which) {
       std::optional<DeskCommand> command;
-      if (on) command = DeskCommand{f, drive_from_level(rig_.fixtures[f].dimmer_curve, *event.value), std::nullopt};
+      if (on) command = DeskCommand{f, drive_for(rig_.fixtures[f], *event.value), std::nullopt};
       if (on && rig_.fixtures[f].moves && (event.pan_rad || event.tilt_rad)) {
         Joints joints = rig_.fixtures[f].joints;
         joints.pan_rad = event.pan_rad.value_or(joints.pan_rad);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/output/dimming.h"
 #include "tools/luxrigd/daemon.h"
 #include "tools/process/clock.h"
 #include "tools/scenario/state_folder.h"
@@ -125,7 +126,7 @@ class SteppedVenue final : public Venue {
     }
     instant.reading_lx = wires_.reading_lx;
     for (std::size_t f = 0; f < rig_.fixtures.size(); ++f)
-      instant.level[f] = level_from_drive(rig_.fixtures[f].dimmer_curve, wires_.drive[f]);
+      instant.level[f] = level_at(rig_.fixtures[f], wires_.drive[f]);
     instant.joints = devices_.world().joints();
     sent.swap(wires_.sent);
     std::fill(wires_.sent.begin(), wires_.sent.end(), false);

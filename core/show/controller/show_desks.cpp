@@ -71,6 +71,7 @@ DeskFollowerSettings ShowController::State::desk_settings(const DeskRules& rules
   for (const std::size_t f : fixtures) {
     LUXRIG_CHECK(f < rig.fixtures.size(), "fixture {} of {}", f, rig.fixtures.size());
     settings.dimmer_curve.push_back(rig.fixtures[f].dimmer_curve);
+    settings.measured_curve.push_back(rig.fixtures[f].measured_curve);
     settings.joints.push_back(program.joints[f]);
   }
   settings.desk_may_turn = std::none_of(points_in_force.begin(), points_in_force.end(),

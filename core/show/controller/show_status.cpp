@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/output/dimming.h"
 #include "core/show/controller/show_state.h"
 
 namespace luxrig {
@@ -141,7 +142,7 @@ ShowStatus ShowController::State::status(Time now) const {
   for (std::size_t i = 0; i < rig.fixtures.size(); ++i) {
     const bool as_planned = i < planned.aim_world_m.size() && same_aim(joints[i], planned.joints[i]);
     status.fixtures.push_back({joints[i], as_planned ? planned.aim_world_m[i] : std::nullopt, level[i],
-                               drive_from_level(rig.fixtures[i].dimmer_curve, level[i]), program.to_level[i],
+                               drive_for(rig.fixtures[i], level[i]), program.to_level[i],
                                !health.lamp_silent(i), estimator.gain(i), estimator.gain_standard_error(i)});
   }
   for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {

@@ -1,3 +1,4 @@
+#include "core/output/dimming.h"
 #include "core/output/output_program.h"
 
 #include <gtest/gtest.h>

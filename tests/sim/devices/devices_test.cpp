@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/output/dimming.h"
 #include "core/output/output_program.h"
 #include "sim/devices/dimmer.h"
 #include "sim/devices/dmx_fixture.h"

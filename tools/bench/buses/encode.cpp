@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 
+#include "core/output/dimming.h"
 #include "drivers/dmx/artnet/artnet_driver.h"
 #include "drivers/dmx/sacn/sacn_driver.h"
 #include "tools/bench/buses/bus_load.h"
@@ -61,7 +62,7 @@ struct EncodePath {
   void evaluate() {
     program.levels_at(at, levels);
     for (std::size_t f = 0; f < commands.size(); ++f) {
-      commands[f] = {f, drive_from_level(rig.fixtures[f].dimmer_curve, levels[f])};
+      commands[f] = {f, drive_for(rig.fixtures[f], levels[f])};
     }
   }
   void write() {

@@ -5,6 +5,7 @@
 #include <future>
 #include <thread>
 
+#include "core/output/dimming.h"
 #include "core/output/output_program.h"
 #include "core/picture/pfm.h"
 #include "tools/http/client.h"
@@ -27,7 +28,7 @@ class SimulatedLight final : public LevelLight {
   ~SimulatedLight() override { driver_->deactivate(now()); }
 
   Result<double> set(double level) override {
-    drive_ = drive_from_level(rig_.fixtures[fixture_].dimmer_curve, level);
+    drive_ = drive_for(rig_.fixtures[fixture_], level);
     Result<void> written;
     for (const Time until = now() + kLampsSettle; now() < until;) {
       written = write();

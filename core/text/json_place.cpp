@@ -1,4 +1,4 @@
-#include "core/plan/json_place.h"
+#include "core/text/json_place.h"
 
 #include <algorithm>
 #include <charconv>

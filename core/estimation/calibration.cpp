@@ -1,0 +1,185 @@
+#include "core/estimation/calibration.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "core/text/json_reader.h"
+
+namespace luxrig {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr const char* kRemedy = "measure the rig again with luxrig calibrate";
+/// Farther off, the rig file describes another lamp, another paint or another place.
+constexpr double kMostRatio = 10, kMostOffset_m = 5, kMostTurn_deg = 180;
+
+Json pair_of(const Known& known) { return Json::array({known.value, known.standard_error}); }
+Json triple_of(const Vec3& v) { return Json::array({v.x(), v.y(), v.z()}); }
+
+/// A value over what the file states, with its error.
+Known ratio_of(const JsonReader& reader, const Json& json, const std::string& path, const char* key) {
+  const auto pair = reader.pair(json, path, key);
+  if (!pair) {
+    if (!json.contains(key)) reader.problem(fmt::format("{}/{} is missing", path, key), kRemedy);
+    return {1, 0};
+  }
+  if (!(pair->x() > 1 / kMostRatio && pair->x() < kMostRatio) || !(pair->y() >= 0 && pair->y() < kMostRatio)) {
+    reader.problem(fmt::format("{}/{} is [{}, {}]", path, key, pair->x(), pair->y()),
+                   fmt::format("give a ratio from {} to {} and its standard error", 1 / kMostRatio, kMostRatio));
+    return {1, 0};
+  }
+  return {pair->x(), pair->y()};
+}
+
+Vec3 within(const JsonReader& reader, const Json& json, const std::string& path, const char* key, double most) {
+  const Vec3 value = reader.vector(json, path, key).value_or(Vec3::Zero());
+  if (value.allFinite() && value.cwiseAbs().maxCoeff() <= most) return value;
+  reader.problem(fmt::format("{}/{} is [{}, {}, {}]", path, key, value.x(), value.y(), value.z()),
+                 fmt::format("give three numbers from {} to {}", -most, most));
+  return Vec3::Zero();
+}
+
+MeasuredCurve curve_of(const JsonReader& reader, const Json& json, const std::string& path) {
+  MeasuredCurve curve;
+  const Json* list = reader.member(json, path, "curve", false);
+  if (!list) return curve;
+  const auto wrong = [&] {
+    reader.wrong_type(path, "curve",
+                      "a list of [level, share of full light], both rising from above 0, the last of them [1, 1]",
+                      *list);
+    return MeasuredCurve{};
+  };
+  if (!list->is_array()) return wrong();
+  for (const Json& entry : *list) {
+    if (!entry.is_array() || entry.size() != 2 || !entry[0].is_number() || !entry[1].is_number()) return wrong();
+    const std::pair<double, double> next{entry[0].get<double>(), entry[1].get<double>()};
+    const auto before = curve.empty() ? std::pair<double, double>{} : curve.back();
+    if (!(next.first > before.first && next.second > before.second)) return wrong();
+    curve.push_back(next);
+  }
+  if (curve.size() == 1 || (!curve.empty() && curve.back() != std::pair<double, double>{1, 1})) return wrong();
+  return curve;
+}
+
+/// Calls body(name, entry, path) for each member of an object of objects.
+template <class Body>
+void each_named(const JsonReader& reader, const Json& json, const char* key, Body body) {
+  const Json* all = reader.member(json, "", key, false);
+  if (!all) return;
+  if (!all->is_object()) return reader.wrong_type("", key, "an object in braces", *all);
+  for (const auto& [name, entry] : all->items()) {
+    // A name with a slash would lead elsewhere as a path, so paths end at the list.
+    if (entry.is_object())
+      body(name, entry, fmt::format("/{}", key));
+    else
+      reader.problem(fmt::format("/{}: \"{}\" is {}, not an object", key, name, entry.type_name()), kRemedy);
+  }
+}
+
+}  // namespace
+
+std::string to_json(const Calibration& calibration) {
+  Json json;
+  json["luxrig_calibration"] = 1;
+  json["rig"] = calibration.rig;
+  json["made"] = calibration.made;
+  json["made_for"] = fmt::format("{:016x}", calibration.made_for);
+  json["fixtures"] = json["materials"] = json["luxmeters"] = json["points"] = Json::object();
+  for (const CalibratedFixture& fixture : calibration.fixtures) {
+    Json& entry = json["fixtures"][fixture.name];
+    entry["output"] = pair_of(fixture.output);
+    entry["offset_m"] = triple_of(fixture.offset_m);
+    entry["offset_error_m"] = triple_of(fixture.offset_error_m);
+    entry["turn_deg"] = triple_of(fixture.turn_deg);
+    entry["turn_error_deg"] = triple_of(fixture.turn_error_deg);
+    if (fixture.curve.empty()) continue;
+    entry["curve_error"] = fixture.curve_error;
+    for (const auto& [level, share] : fixture.curve) entry["curve"].push_back(Json::array({level, share}));
+  }
+  for (const CalibratedMaterial& material : calibration.materials)
+    json["materials"][material.name]["reflectance"] = pair_of(material.reflectance);
+  for (const CalibratedLuxmeter& luxmeter : calibration.luxmeters)
+    json["luxmeters"][luxmeter.name]["gain"] = pair_of(luxmeter.gain);
+  for (const CalibratedLight& light : calibration.lights)
+    json["points"][light.point][light.fixture] = pair_of(light.lux);
+  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+Checked<Calibration> calibration_from_json(const std::string& text, const std::string& file_name) {
+  JsonReader reader(file_name, "a calibration", kRemedy);
+  const auto document = reader.document(text);
+  if (!document) return tl::unexpected(reader.problems(text));
+  const Json& json = *document;
+  reader.require_version(json, "luxrig_calibration", 1);
+  Calibration calibration;
+  calibration.rig = reader.text(json, "", "rig", true);
+  calibration.made = reader.text(json, "", "made", true);
+  calibration.made_for = reader.fingerprint(json, "", "made_for");
+  each_named(reader, json, "fixtures", [&](const std::string& name, const Json& entry, const std::string& list) {
+    const std::string path = list + "/" + name;
+    CalibratedFixture fixture;
+    fixture.name = name;
+    fixture.output = ratio_of(reader, entry, path, "output");
+    fixture.offset_m = within(reader, entry, path, "offset_m", kMostOffset_m);
+    fixture.offset_error_m = within(reader, entry, path, "offset_error_m", kMostOffset_m).cwiseAbs();
+    fixture.turn_deg = within(reader, entry, path, "turn_deg", kMostTurn_deg);
+    fixture.turn_error_deg = within(reader, entry, path, "turn_error_deg", kMostTurn_deg).cwiseAbs();
+    fixture.curve = curve_of(reader, entry, path);
+    fixture.curve_error = reader.optional_number(entry, path, "curve_error").value_or(0);
+    calibration.fixtures.push_back(std::move(fixture));
+  });
+  each_named(reader, json, "materials", [&](const std::string& name, const Json& entry, const std::string& list) {
+    calibration.materials.push_back({name, ratio_of(reader, entry, list + "/" + name, "reflectance")});
+  });
+  each_named(reader, json, "luxmeters", [&](const std::string& name, const Json& entry, const std::string& list) {
+    calibration.luxmeters.push_back({name, ratio_of(reader, entry, list + "/" + name, "gain")});
+  });
+  each_named(reader, json, "points", [&](const std::string& point, const Json& entry, const std::string& list) {
+    for (const auto& [fixture, value] : entry.items()) {
+      const auto lux = reader.pair(entry, list + "/" + point, fixture.c_str());
+      if (!lux) continue;
+      if (lux->allFinite() && lux->minCoeff() >= 0)
+        calibration.lights.push_back({point, fixture, {lux->x(), lux->y()}});
+      else
+        reader.wrong_type(list + "/" + point, fixture.c_str(), "[lux, its standard error], none below 0", value);
+    }
+  });
+  if (reader.any_problem()) return tl::unexpected(reader.problems(text));
+  return calibration;
+}
+
+Checked<Rig> calibrated(Rig rig, const Calibration& calibration, const std::string& file_name) {
+  std::vector<Problem> problems;
+  const auto problem = [&](std::string what, std::string mend) {
+    problems.push_back({file_name, 0, 0, std::move(what), std::move(mend)});
+  };
+  if (calibration.rig != rig.name)
+    problem(fmt::format("it is of rig \"{}\", this is \"{}\"", calibration.rig, rig.name), kRemedy);
+  for (const CalibratedFixture& found : calibration.fixtures) {
+    const auto fixture = std::find_if(rig.fixtures.begin(), rig.fixtures.end(),
+                                      [&](const Fixture& each) { return each.name == found.name; });
+    if (fixture == rig.fixtures.end()) {
+      problem(fmt::format("the rig has no fixture \"{}\"", found.name), kRemedy);
+      continue;
+    }
+    fixture->world_from_mount = displaced(fixture->world_from_mount, found.offset_m, found.turn_deg * (kPi / 180));
+    fixture->measured_curve = found.curve;
+    if (found.output.value == 1) continue;
+    Luminaire luminaire = rig.luminaires[fixture->luminaire];
+    luminaire.lumens *= found.output.value;
+    luminaire.intensity = scaled_to_flux(luminaire.intensity, found.output.value * luminaire.intensity->flux_lm());
+    fixture->luminaire = rig.luminaires.size();
+    rig.luminaires.push_back(std::move(luminaire));
+  }
+  for (const CalibratedMaterial& material : calibration.materials)
+    rig.scene.paint.emplace_back(material.name, material.reflectance.value);
+  if (!problems.empty()) return tl::unexpected(std::move(problems));
+  return rig;
+}
+
+}  // namespace luxrig

@@ -1,0 +1,67 @@
+#pragma once
+/// What was learnt of a rig that its file does not say, or says wrongly: a value, and a file beside the rig file. It is
+/// applied over the rig and never written into the rig file.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/geometry.h"
+#include "core/result.h"
+#include "core/rig/rig.h"
+
+namespace luxrig {
+
+/// With its standard error; 0 = not measured, taken from the rig file.
+struct Known {
+  double value = 0, standard_error = 0;
+  friend bool operator==(const Known&, const Known&) = default;
+};
+
+struct CalibratedFixture {
+  std::string name;
+  Known output{1, 0};  ///< true over rated flux, > 0
+  /// How its mount hangs off the rig file's place, along and about world x, y, z. Emitters of one housing hang together.
+  Vec3 offset_m = Vec3::Zero(), offset_error_m = Vec3::Zero();
+  Vec3 turn_deg = Vec3::Zero(), turn_error_deg = Vec3::Zero();
+  MeasuredCurve curve{};   ///< empty = the rig file's is right
+  double curve_error = 0;  ///< standard error of a share, relative
+};
+
+struct CalibratedMaterial {
+  std::string name;         ///< of the built scene
+  Known reflectance{1, 0};  ///< true over stated, > 0
+};
+
+struct CalibratedLuxmeter {
+  std::string name;
+  Known gain{1, 0};  ///< reading over light, > 0
+};
+
+/// Light of one fixture at full level at one point, at the aims of the rig file.
+struct CalibratedLight {
+  std::string point, fixture;
+  Known lux;
+};
+
+struct Calibration {
+  std::string rig;
+  std::string made;            ///< when, UTC, as 2026-11-28T06:12:00Z
+  std::uint64_t made_for = 0;  ///< RigVersion::light of the rig file then
+  std::vector<CalibratedFixture> fixtures;
+  std::vector<CalibratedMaterial> materials;
+  std::vector<CalibratedLuxmeter> luxmeters;
+  std::vector<CalibratedLight> lights;
+};
+
+/// JSON, "luxrig_calibration": 1. A key for each entry's name, so that two files can be compared line by line.
+/// The same value gives the same bytes.
+[[nodiscard]] std::string to_json(const Calibration& calibration);
+/// Never throws. Problems have line and column. Unknown keys are ignored, since later versions add some.
+[[nodiscard]] Checked<Calibration> calibration_from_json(const std::string& text, const std::string& file_name);
+
+/// The rig as it was found to be: outputs, mounts, reflectances and curves. A problem for each name that the rig does not
+/// have, and for another rig's calibration.
+[[nodiscard]] Checked<Rig> calibrated(Rig rig, const Calibration& calibration, const std::string& file_name);
+
+}  // namespace luxrig

@@ -1,0 +1,158 @@
+#include "core/estimation/calibration.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "core/output/dimming.h"
+
+namespace luxrig {
+namespace {
+
+Calibration example() {
+  Calibration calibration;
+  calibration.rig = "gallery";
+  calibration.made = "2026-11-28T06:12:00Z";
+  calibration.made_for = 0xfeedULL << 40;
+  CalibratedFixture lamp;
+  lamp.name = "wash/red";
+  lamp.output = {1.07, 0.012};
+  lamp.offset_m = {0.03, -0.05, 0};
+  lamp.offset_error_m = {0.01, 0.01, 0.02};
+  lamp.turn_deg = {1, 0, -2};
+  lamp.turn_error_deg = {0.2, 0.2, 0.4};
+  lamp.curve = {{0.1, 0.04}, {0.5, 0.42}, {1, 1}};
+  lamp.curve_error = 0.01;
+  calibration.fixtures = {lamp, {.name = "spot"}};
+  calibration.materials = {{"plaster, white", {0.93, 0.02}}};
+  calibration.luxmeters = {{"meter", {1.01, 0.004}}};
+  calibration.lights = {{"picture", "spot", {410, 6}}, {"picture", "wash/red", {0, 0.1}}};
+  return calibration;
+}
+
+/// What is wrong with this text, as a person reads it.
+std::string refused(const std::string& text) {
+  const auto read = calibration_from_json(text, "c.json");
+  return read ? "nothing" : read.error().front().text();
+}
+
+std::string with(const std::string& fixture) {
+  return R"({"luxrig_calibration": 1, "rig": "r", "made": "today",
+"fixtures": {"lamp": )" +
+         fixture + "}}";
+}
+
+TEST(Calibration, IsTheSameAfterItsFile) {
+  const std::string text = to_json(example());
+  const auto read = calibration_from_json(text, "c.json");
+  ASSERT_TRUE(read) << read.error().front().text();
+  EXPECT_EQ(to_json(*read), text);
+  ASSERT_EQ(read->fixtures.size(), 2u);  // by name
+  EXPECT_EQ(read->fixtures[1].name, "wash/red");
+  EXPECT_EQ(read->fixtures[1].output, (Known{1.07, 0.012}));
+  EXPECT_EQ(read->fixtures[1].turn_deg, example().fixtures[0].turn_deg);
+  EXPECT_EQ(read->fixtures[1].curve, example().fixtures[0].curve);
+  EXPECT_EQ(read->made_for, example().made_for);
+  ASSERT_EQ(read->lights.size(), 2u);
+  EXPECT_EQ(read->lights[0].lux, (Known{410, 6}));
+}
+
+TEST(Calibration, SaysWhereAndWhatIsWrong) {
+  EXPECT_EQ(refused(with(R"({"output": [1.1, 0.01]})")), "nothing");
+  EXPECT_EQ(refused(with(R"({"output": [0, 0.01]})")).find("c.json:2:"), 0u) << refused(with(R"({"output": [0, 1]})"));
+  for (const char* wrong :
+       {"{}", "7", R"({"output": 1})", R"({"output": [1, -0.1]})", R"({"output": [1e400, 0]})",
+        R"({"output": [99, 0]})", R"({"output": [1, 0], "offset_m": [1, 2]})",
+        R"({"output": [1, 0], "offset_m": [0, 0, 9]})", R"({"output": [1, 0], "turn_deg": [0, 0, 400]})",
+        R"({"output": [1, 0], "curve": [[0.5, 0.4]]})", R"({"output": [1, 0], "curve": [[1, 1]]})",
+        R"({"output": [1, 0], "curve": [[0.5, 0.4], [0.4, 0.5], [1, 1]]})",
+        R"({"output": [1, 0], "curve": [[0, 0], [1, 1]]})", R"({"output": [1, 0], "curve": [[0.5, "x"], [1, 1]]})"})
+    EXPECT_NE(refused(with(wrong)), "nothing") << wrong;
+  EXPECT_NE(refused("[]"), "nothing");
+  EXPECT_NE(refused(R"({"luxrig_calibration": 2, "rig": "r", "made": ""})"), "nothing");
+}
+
+TEST(Calibration, NeverThrowsOnBrokenText) {
+  std::mt19937_64 random(5);
+  const std::string whole = to_json(example());
+  for (int k = 0; k < 3000; ++k) {
+    std::string text = whole;
+    for (int edits = 1 + static_cast<int>(random() % 4); edits > 0; --edits) {
+      const std::size_t at = random() % text.size();
+      if (random() % 3 == 0)
+        text.erase(at, 1 + random() % 20);
+      else
+        text[at] = "{}[]\",:0-9e.x\n"[random() % 14];
+      if (text.empty()) text = " ";
+    }
+    const auto read = calibration_from_json(text, "c.json");
+    if (!read)
+      for (const Problem& problem : read.error()) EXPECT_FALSE(problem.mend.empty());
+  }
+}
+
+TEST(Calibration, NamesThatTheRigDoesNotHaveAreProblems) {
+  Rig rig;
+  rig.name = "gallery";
+  const auto applied = calibrated(rig, example(), "c.json");
+  ASSERT_FALSE(applied);
+  EXPECT_EQ(applied.error().size(), 2u);
+  rig.name = "hall";
+  EXPECT_EQ(calibrated(rig, {.rig = "gallery"}, "c.json").error().size(), 1u);
+}
+
+TEST(Calibration, IsLaidOverTheRig) {
+  Rig rig;
+  rig.name = "gallery";
+  Luminaire luminaire;
+  luminaire.name = "bulb";
+  luminaire.lumens = 1000;
+  luminaire.intensity = make_isotropic(1000);
+  rig.luminaires = {luminaire};
+  rig.fixtures.resize(2);
+  rig.fixtures[0].name = "wash/red";
+  rig.fixtures[1].name = "spot";
+  const auto applied = calibrated(rig, example(), "c.json");
+  ASSERT_TRUE(applied) << applied.error().front().text();
+  const Fixture& lamp = applied->fixtures[0];
+  EXPECT_NEAR(applied->luminaires[lamp.luminaire].intensity->flux_lm(), 1070, 1e-9);
+  EXPECT_NEAR(applied->luminaires[applied->fixtures[1].luminaire].intensity->flux_lm(), 1000, 1e-9);
+  EXPECT_TRUE(lamp.world_from_mount.translation_m.isApprox(Vec3(0.03, -0.05, 0)));
+  const Eigen::AngleAxisd turned(lamp.world_from_mount.rotation);
+  EXPECT_NEAR(turned.angle(), rad_from_deg(std::sqrt(5.0)), 1e-12);
+  EXPECT_EQ(applied->scene.paint.size(), 1u);
+  // Half of its full light needs more than half of its drive.
+  EXPECT_NEAR(level_at(lamp, drive_for(lamp, 0.5)), 0.5, 1e-12);
+  EXPECT_GT(drive_for(lamp, 0.5), 0.5);
+}
+
+TEST(MeasuredCurve, RisesAndItsInverseReturnsTheLevel) {
+  std::mt19937_64 random(6);
+  std::uniform_real_distribution<double> unit(0.01, 1);
+  for (int k = 0; k < 300; ++k) {
+    // A power with a wobble, at random levels.
+    const double exponent = 0.8 + 1.6 * unit(random);
+    std::vector<double> levels{1};
+    for (std::size_t n = 1 + random() % 6; n > 0; --n) levels.push_back(unit(random));
+    std::sort(levels.begin(), levels.end());
+    levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
+    if (levels.size() < 2) continue;
+    MeasuredCurve curve;
+    for (const double level : levels) curve.emplace_back(level, std::pow(level, exponent));
+    double before = 0;
+    for (int i = 1; i <= 200; ++i) {
+      const double level = i / 200.0, share = share_at_level(curve, level);
+      EXPECT_GT(share, before);
+      before = share;
+      EXPECT_NEAR(share, std::pow(level, exponent), 1e-9) << "a power is met everywhere";
+      EXPECT_NEAR(level_of_share(curve, share), level, 1e-9);
+    }
+    EXPECT_EQ(share_at_level(curve, 0), 0);
+    EXPECT_EQ(share_at_level(curve, 1), 1);
+  }
+}
+
+}  // namespace
+}  // namespace luxrig
