@@ -109,13 +109,10 @@ void MeterRun::find_curves() {
       }
       if (shares.size() > 1) {
         std::reverse(shares.begin(), shares.end());
-        const auto [level, share] = shares[shares.size() - 2];
+        // Above what a limit lets it reach, the maker's curve is all there is.
         const double top = shares.back().first;
-        if (top < 1) {
-          const double power = std::log(1 / share) / std::log(top / level);
-          for (auto& entry : shares) entry.second *= std::pow(top, power);
-          shares.emplace_back(1, 1);
-        }
+        for (auto& entry : shares) entry.second *= top;
+        if (top < 1) shares.emplace_back(1, 1);
         curve.of_level = std::move(shares);
       }
     }

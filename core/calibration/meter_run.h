@@ -39,7 +39,7 @@ class MeterRun {
   void take(std::span<const double> level, std::span<const std::optional<SteadyReading>> readings);
 
   /// Share of full light by level, of the lamps that a meter sees well enough; else empty. Of a lamp that a limit keeps
-  /// below full level, the measured power goes on up to it.
+  /// below full level, the maker's curve holds above.
   [[nodiscard]] const MeasuredCurve& curve(std::size_t fixture) const { return curves_[fixture].of_level; }
   [[nodiscard]] double curve_error(std::size_t fixture) const { return curves_[fixture].error; }
   /// For LightUnknowns: each lamp's brightest step. Call it when all is measured.

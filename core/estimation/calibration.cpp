@@ -18,6 +18,10 @@ constexpr const char* kRemedy = "measure the rig again with luxrig calibrate";
 /// Farther off, the rig file describes another lamp, another paint or another place.
 constexpr double kMostRatio = 10, kMostOffset_m = 5, kMostTurn_deg = 180;
 
+/// A lamp lights a point if it gives this share of the brightest that it gives. Its light is never known better than the
+/// least.
+constexpr double kLights = 0.1, kSmallestLocal = 0.01;
+
 Json pair_of(const Known& known) { return Json::array({known.value, known.standard_error}); }
 Json triple_of(const Vec3& v) { return Json::array({v.x(), v.y(), v.z()}); }
 
@@ -79,6 +83,22 @@ void each_named(const JsonReader& reader, const Json& json, const char* key, Bod
     else
       reader.problem(fmt::format("/{}: \"{}\" is {}, not an object", key, name, entry.type_name()), kRemedy);
   }
+}
+
+/// What a calibration leaves uncertain of a lamp. Beside its output: of its light at the points that it lights.
+LightError error_of(const Calibration& calibration, const CalibratedFixture& fixture) {
+  double brightest = 0;
+  for (const CalibratedLight& light : calibration.lights)
+    if (light.fixture == fixture.name) brightest = std::max(brightest, light.lux.value);
+  double variance = 0, points = 0;
+  for (const CalibratedLight& light : calibration.lights) {
+    if (light.fixture != fixture.name || !(light.lux.value > kLights * brightest)) continue;
+    variance += std::pow(light.lux.standard_error / light.lux.value, 2);
+    ++points;
+  }
+  const double output = fixture.output.standard_error / fixture.output.value;
+  const double local = points > 0 ? std::sqrt(std::max(0.0, variance / points - output * output)) : 0;
+  return {output, std::max({local, fixture.curve_error, kSmallestLocal})};
 }
 
 }  // namespace
@@ -169,6 +189,17 @@ Checked<Rig> calibrated(Rig rig, const Calibration& calibration, const std::stri
     }
     fixture->world_from_mount = displaced(fixture->world_from_mount, found.offset_m, found.turn_deg * (kPi / 180));
     fixture->measured_curve = found.curve;
+    fixture->known_to = error_of(calibration, found);
+    if (fixture->moves && fixture->aim_world_m) {
+      const Vec3 direction_world = *fixture->aim_world_m - fixture->world_from_mount.translation_m;
+      const auto reached =
+          pan_tilt_towards(fixture->world_from_mount, direction_world, fixture->range, fixture->joints);
+      if (reached)
+        fixture->joints = *reached;
+      else
+        problem(fmt::format("as \"{}\" was found to hang, its aim is out of its reach", found.name),
+                "aim it at another place, or hang it right and calibrate again");
+    }
     if (found.output.value == 1) continue;
     Luminaire luminaire = rig.luminaires[fixture->luminaire];
     luminaire.lumens *= found.output.value;
@@ -179,7 +210,10 @@ Checked<Rig> calibrated(Rig rig, const Calibration& calibration, const std::stri
   for (const CalibratedMaterial& material : calibration.materials)
     rig.scene.paint.emplace_back(material.name, material.reflectance.value);
   if (!problems.empty()) return tl::unexpected(std::move(problems));
+  rig.calibrated = calibration.made;
   return rig;
 }
+
+std::filesystem::path calibration_file(const Rig& rig) { return rig.file.parent_path() / "calibration.json"; }
 
 }  // namespace luxrig

@@ -3,6 +3,7 @@
 /// applied over the rig and never written into the rig file.
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -60,8 +61,12 @@ struct Calibration {
 /// Never throws. Problems have line and column. Unknown keys are ignored, since later versions add some.
 [[nodiscard]] Checked<Calibration> calibration_from_json(const std::string& text, const std::string& file_name);
 
-/// The rig as it was found to be: outputs, mounts, reflectances and curves. A problem for each name that the rig does not
-/// have, and for another rig's calibration.
+/// The rig as it was found to be: outputs, mounts, reflectances and curves, and what is still uncertain of them. Heads
+/// turn to where they shall look from their true place. A problem for each name that the rig does not have, for an aim
+/// out of reach, and for another rig's calibration.
 [[nodiscard]] Checked<Rig> calibrated(Rig rig, const Calibration& calibration, const std::string& file_name);
+
+/// Where a rig's calibration is kept.
+[[nodiscard]] std::filesystem::path calibration_file(const Rig& rig);
 
 }  // namespace luxrig

@@ -91,7 +91,8 @@ GainEstimator::GainEstimator(const Rig& rig, const LightModel& model)
   const auto state = [&](const VectorXd& stated, RowVectorXd& sd, const char* what) {
     if (stated.size() == 0) return;
     LUXRIG_CHECK(stated.size() == fixtures, "{} of {} fixtures, the rig has {}", what, stated.size(), fixtures);
-    sd.head(fixtures) = stated.transpose();
+    for (Index j = 0; j < fixtures; ++j)
+      if (std::isfinite(stated[j])) sd[j] = stated[j];
   };
   state(model.gain_sd, prior_gain_sd_, "gain_sd");
   state(model.local_sd, prior_local_sd_, "local_sd");

@@ -14,7 +14,7 @@ struct LightModel {
   Eigen::VectorXd point_fixed_lx, meter_fixed_lx;              ///< daylight; empty = none
   Eigen::VectorXd point_fixed_error_lx, meter_fixed_error_lx;  ///< standard error of that; empty = exact
   /// Per fixture, after a calibration: standard deviations of its output over the model's, and of its light at a place
-  /// beside that, as shares. Empty = as wide as the rig file allows.
+  /// beside that, as shares. NaN or empty = as wide as the rig file allows.
   Eigen::VectorXd gain_sd, local_sd;
 };
 

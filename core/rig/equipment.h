@@ -47,6 +47,11 @@ enum class DimmerCurve { linear, square, s_curve };
 /// least two (1, 1). Empty = the maker's curve is right.
 using MeasuredCurve = std::vector<std::pair<double, double>>;
 
+/// Standard deviations, as shares: of a lamp's output, and of its light at a place beside that.
+struct LightError {
+  double output = 0, local = 0;
+};
+
 struct Personality;
 
 /// For a fixture whose slots come from its maker's file.
@@ -79,6 +84,7 @@ struct Fixture {
   std::optional<FixtureMode> mode{};  ///< if it has a personality
   DimmerCurve dimmer_curve = DimmerCurve::linear;
   MeasuredCurve measured_curve{};    ///< by a calibration; over dimmer_curve
+  std::optional<LightError> known_to{};  ///< by a calibration; none = as wide as the rig file allows
   bool switched = false;             ///< on or off: its level is 0 or 1, nothing between (a relay, a contactor)
   double max_level = 1.0;            ///< 0…1; its output never exceeds it
   std::optional<double> safe_level;  ///< overrides [safe] level

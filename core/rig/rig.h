@@ -19,6 +19,7 @@ namespace luxrig {
 struct Rig {
   std::filesystem::path file;  ///< as opened; for problems, and for paths relative to it
   std::string name;
+  std::string calibrated;  ///< when the calibration that is applied over the file was made; empty = none is
   SceneSpec scene;
   std::vector<Luminaire> luminaires;
   std::vector<Bus> buses;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "core/solve/placement/scene/mounting.h"
 #include "core/tasks/rig_notes/rig_notes.h"
@@ -94,6 +95,17 @@ LightModel light_model(const Rig& rig, const TransportMatrix& transport) {
       model.point_fixed_error_lx = error.topRightCorner(points, 1);
       model.meter_fixed_error_lx = error.bottomRightCorner(meters, 1);
     }
+  }
+  const bool calibrated = std::any_of(rig.fixtures.begin(), rig.fixtures.end(),
+                                      [](const Fixture& fixture) { return fixture.known_to.has_value(); });
+  if (calibrated) {
+    model.gain_sd.setConstant(lights, std::numeric_limits<double>::quiet_NaN());
+    model.local_sd = model.gain_sd;
+    for (Eigen::Index f = 0; f < lights; ++f)
+      if (const auto& known_to = rig.fixtures[static_cast<std::size_t>(f)].known_to) {
+        model.gain_sd[f] = known_to->output;
+        model.local_sd[f] = known_to->local;
+      }
   }
   return model;
 }

@@ -17,6 +17,7 @@
 #include "drivers/io/os_fault.h"
 #include "drivers/registry.h"
 #include "tools/command_line/version.h"
+#include "tools/luxrig/open_session.h"
 #include "tools/luxrigd/bus_thread.h"
 #include "tools/luxrigd/guardian/guardian_words.h"
 #include "tools/luxrigd/guardian/handed_light.h"
@@ -199,7 +200,8 @@ int guard(const GuardianArguments& arguments) {
   if (::pipe(g_signal_pipe) != 0) return kExitFailed;
   for (const int signal : {SIGUSR1, SIGTERM, SIGINT}) ::signal(signal, on_signal);
   for (const int signal : {SIGPIPE, SIGHUP}) ::signal(signal, SIG_IGN);
-  const auto rig = load_rig(arguments.rig);
+  auto rig = load_rig(arguments.rig);
+  if (rig) rig = with_calibration(std::move(*rig));
   if (!rig) return report(rig.error());
   if (const auto problems = check_buses(*rig); !problems.empty()) return report(problems);
   const auto redirects = redirects_of(arguments.redirects);

@@ -8,7 +8,7 @@ namespace luxrig {
 extern const Command kInitCommand, kCheckCommand, kImportCommand;
 extern const Command kEvaluateCommand, kSolveCommand, kRenderCommand;
 extern const Command kRunCommand, kStatusCommand, kMonitorCommand;
-extern const Command kDevicesCommand, kRdmCommand, kCameraCommand, kRecordCommand, kReplayCommand;
+extern const Command kCalibrateCommand, kDevicesCommand, kRdmCommand, kCameraCommand, kRecordCommand, kReplayCommand;
 extern const Command kCompletionCommand;
 
 /// In client_commands.cpp: commands that only send a request to a running daemon.

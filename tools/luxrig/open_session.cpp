@@ -1,16 +1,47 @@
 #include "tools/luxrig/open_session.h"
 
+#include <system_error>
+
+#include "core/estimation/calibration.h"
 #include "core/rig/rig_file.h"
 #include "drivers/camera/camera_source.h"
 #include "drivers/registry.h"
+#include "tools/process/files.h"
 
 namespace luxrig {
+namespace {
 
-Checked<Session> open_session(const std::filesystem::path& rig_path) {
-  auto rig = load_rig(rig_path);
-  if (!rig) return tl::unexpected(std::move(rig.error()));
+Checked<Rig> stated_rig(const std::filesystem::path& path) {
+  auto rig = load_rig(path);
+  if (!rig) return rig;
   if (auto problems = check_buses(*rig); !problems.empty()) return tl::unexpected(std::move(problems));
   if (auto problems = check_cameras(*rig); !problems.empty()) return tl::unexpected(std::move(problems));
+  return rig;
+}
+
+}  // namespace
+
+Checked<Rig> with_calibration(Rig rig) {
+  const std::filesystem::path file = calibration_file(rig);
+  std::error_code error;
+  if (!std::filesystem::exists(file, error) && !error) return rig;
+  const auto text = read_file(file);
+  if (!text) return tl::unexpected(text.error());
+  const auto calibration = calibration_from_json(*text, file.string());
+  if (!calibration) return tl::unexpected(calibration.error());
+  return calibrated(std::move(rig), *calibration, file.string());
+}
+
+Checked<Session> open_session(const std::filesystem::path& rig_path) {
+  auto rig = stated_rig(rig_path);
+  if (rig) rig = with_calibration(std::move(*rig));
+  if (!rig) return tl::unexpected(std::move(rig.error()));
+  return session_of(std::move(*rig));
+}
+
+Checked<Session> open_stated_session(const std::filesystem::path& rig_path) {
+  auto rig = stated_rig(rig_path);
+  if (!rig) return tl::unexpected(std::move(rig.error()));
   return session_of(std::move(*rig));
 }
 

@@ -7,7 +7,14 @@
 
 namespace luxrig {
 
-/// Reads and checks everything: rig, photometry, buses, meshes, mounting. All problems, or a Session.
+/// Reads and checks everything: rig, its calibration if there is one, photometry, buses, meshes, mounting. All problems,
+/// or a Session.
 [[nodiscard]] Checked<Session> open_session(const std::filesystem::path& rig_path);
+
+/// The same without a calibration: what the rig file says, to measure or to simulate.
+[[nodiscard]] Checked<Session> open_stated_session(const std::filesystem::path& rig_path);
+
+/// A rig as its file has it, with the calibration beside it, if there is one.
+[[nodiscard]] Checked<Rig> with_calibration(Rig rig);
 
 }  // namespace luxrig

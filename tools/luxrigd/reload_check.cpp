@@ -82,6 +82,7 @@ const char* output_key_that_differs(const Fixture& a, const Fixture& b) {
   if (!same(a.patch, b.patch)) return "its patch (address, slots, mode or registers)";
   if (!same(a.axes, b.axes)) return "axes";
   if (a.dimmer_curve != b.dimmer_curve) return "dimmer_curve";
+  if (a.measured_curve != b.measured_curve) return "its dimmer's measured curve (calibration.json)";
   if (a.switched != b.switched) return "switched";
   if (a.moves != b.moves || !same(a.range, b.range)) return "the range of its pan, tilt or zoom";
   if (a.pan_speed_rad_s != b.pan_speed_rad_s || a.tilt_speed_rad_s != b.tilt_speed_rad_s ||

@@ -10,6 +10,7 @@
 #include <thread>
 #include <utility>
 
+#include "core/estimation/calibration.h"
 #include "tools/luxrigd/scheduling.h"
 
 namespace luxrig {
@@ -52,6 +53,7 @@ std::vector<std::filesystem::path> files_of(const Rig& rig) {
   for (const Luminaire& luminaire : rig.luminaires) add(luminaire.ies_path);
   for (const Fixture& fixture : rig.fixtures)
     if (fixture.mode) add(fixture.mode->file);
+  add(calibration_file(rig));
   return files;
 }
 

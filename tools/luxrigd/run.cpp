@@ -10,6 +10,7 @@
 #include <mutex>
 #include <thread>
 
+#include "core/estimation/calibration.h"
 #include "core/parallel.h"
 #include "core/rig/null_bus.h"
 #include "core/tasks/solve_tasks.h"
@@ -187,6 +188,8 @@ int run_rig(const RunArguments& arguments) {
   RunReport say(teller, rig, process_start);
   say.say(fmt::format("{}: {} triangles, {} fixtures, {} points, {} luxmeters", rig.name,
                       session->scene.triangles.size(), rig.fixtures.size(), rig.points.size(), rig.luxmeters.size()));
+  if (!rig.calibrated.empty())
+    say.say(fmt::format("as calibrated {} ({})", rig.calibrated, calibration_file(rig).string()));
 
   // 1. The simulated rig computes its truth while we compute the plan.
   DaemonOptions options;

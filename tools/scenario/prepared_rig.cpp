@@ -6,7 +6,7 @@
 namespace luxrig::scenario {
 
 Checked<PreparedRig> prepare(const std::filesystem::path& path, const PrepareOptions& options) {
-  auto opened = open_session(path);
+  auto opened = open_stated_session(path);
   if (!opened) return tl::unexpected(std::move(opened.error()));
   const auto session = std::make_shared<const Session>(std::move(*opened));
   const Rig& rig = session->rig;

@@ -25,7 +25,9 @@ Calibration example() {
   lamp.turn_error_deg = {0.2, 0.2, 0.4};
   lamp.curve = {{0.1, 0.04}, {0.5, 0.42}, {1, 1}};
   lamp.curve_error = 0.01;
-  calibration.fixtures = {lamp, {.name = "spot"}};
+  CalibratedFixture spot;
+  spot.name = "spot";
+  calibration.fixtures = {lamp, spot};
   calibration.materials = {{"plaster, white", {0.93, 0.02}}};
   calibration.luxmeters = {{"meter", {1.01, 0.004}}};
   calibration.lights = {{"picture", "spot", {410, 6}}, {"picture", "wash/red", {0, 0.1}}};
@@ -100,7 +102,9 @@ TEST(Calibration, NamesThatTheRigDoesNotHaveAreProblems) {
   ASSERT_FALSE(applied);
   EXPECT_EQ(applied.error().size(), 2u);
   rig.name = "hall";
-  EXPECT_EQ(calibrated(rig, {.rig = "gallery"}, "c.json").error().size(), 1u);
+  Calibration of_gallery;
+  of_gallery.rig = "gallery";
+  EXPECT_EQ(calibrated(rig, of_gallery, "c.json").error().size(), 1u);
 }
 
 TEST(Calibration, IsLaidOverTheRig) {
@@ -126,6 +130,37 @@ TEST(Calibration, IsLaidOverTheRig) {
   // Half of its full light needs more than half of its drive.
   EXPECT_NEAR(level_at(lamp, drive_for(lamp, 0.5)), 0.5, 1e-12);
   EXPECT_GT(drive_for(lamp, 0.5), 0.5);
+}
+
+TEST(Calibration, TurnsAHeadToWhereItShallLookFromItsTruePlace) {
+  Rig rig;
+  rig.name = "gallery";
+  rig.fixtures.resize(2);
+  rig.luminaires.resize(1);
+  rig.luminaires[0].intensity = make_isotropic(1000);
+  rig.luminaires[0].lumens = 1000;
+  for (const char* name : {"wash/red", "spot"}) rig.fixtures[name[0] == 's'].name = name;
+  Fixture& head = rig.fixtures[0];
+  head.moves = true;
+  head.range = {-kPi, kPi, -kPi / 2, kPi / 2};
+  head.world_from_mount.translation_m = Vec3(0, 0, 3);
+  head.aim_world_m = Vec3(1, 2, 0);
+  const auto applied = calibrated(rig, example(), "c.json");
+  ASSERT_TRUE(applied) << applied.error().front().text();
+  const Pose lamp = applied->fixtures[0].world_from_lamp();
+  const Vec3 wanted = (*head.aim_world_m - lamp.translation_m).normalized();
+  EXPECT_GT(lamp.rotation.col(2).cwiseAbs().dot(wanted.cwiseAbs()), 0.999999) << "its axis, up or down";
+  EXPECT_EQ(applied->calibrated, example().made);
+  // What is left uncertain: of the one lamp its curve's 1 %, of the other its light at the one point that it lights.
+  ASSERT_TRUE(applied->fixtures[0].known_to && applied->fixtures[1].known_to);
+  EXPECT_NEAR(applied->fixtures[0].known_to->output, 0.012 / 1.07, 1e-12);
+  EXPECT_NEAR(applied->fixtures[0].known_to->local, 0.01, 1e-12);
+  EXPECT_NEAR(applied->fixtures[1].known_to->local, 6.0 / 410, 1e-12);
+  // An aim that it cannot reach is said, not approached.
+  rig.fixtures[0].range = {0, 0.01, 0, 0.01};
+  const auto refused = calibrated(rig, example(), "c.json");
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().front().text().find("out of its reach"), std::string::npos);
 }
 
 TEST(MeasuredCurve, RisesAndItsInverseReturnsTheLevel) {

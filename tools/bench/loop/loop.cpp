@@ -4,9 +4,13 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 #include <random>
+#include <span>
 
+#include "core/calibration/meter_run.h"
 #include "core/calibration/rig_light.h"
+#include "core/output/dimming.h"
 #include "core/rig/rig_file.h"
 #include "sim/world/world.h"
 #include "tools/bench/suites.h"
@@ -20,52 +24,61 @@ using Eigen::VectorXd;
 
 constexpr double kTransportError = 0.003, kTruthError = 0.005;
 constexpr int kSamples = 10;
-constexpr double kSamplePeriod_s = 0.2;
+constexpr double kSamplePeriod_s = 0.2, kSmallestError_lx = 0.02;
 /// Longer than the slowest meter's delay and the lamps' ramps.
 constexpr double kSettle_s = 3.5;
-/// Where the light is judged. Curves of dimmers are another case: here light is taken to follow the level.
+/// Where the light is judged: lamps at this level as sent, or as bright as a limit lets each of them alone be.
 constexpr double kLevel = 0.4;
 
-/// What each lamp alone gives at full level, in truth and as the meters show it.
-struct LampByLamp {
-  MatrixXd truth_lx;  ///< points × fixtures
-  std::vector<LightReading> readings;
-};
+/// A simulated rig that is told levels and asked for readings.
+class Bench {
+ public:
+  Bench(sim::World& world, const Rig& rig) : world_(world), rig_(rig), now_(world.now()) {}
 
-LampByLamp measure_lamps(sim::World& world, const Rig& rig) {
-  const auto fixtures = static_cast<Index>(rig.fixtures.size()), points = static_cast<Index>(rig.points.size()),
-             meters = static_cast<Index>(rig.luxmeters.size());
-  Time now = world.now();
-  const auto mean_of_meters = [&] {
-    now += from_seconds(kSettle_s);
-    world.advance(now);
-    VectorXd sum = VectorXd::Zero(meters);
+  /// Means of all luxmeters once they are steady; their noise is estimated from the same readings.
+  std::vector<std::optional<SteadyReading>> read(std::span<const double> level) {
+    set(level);
+    std::vector<double> sum(rig_.luxmeters.size(), 0.0), of_squares(rig_.luxmeters.size(), 0.0);
     for (int k = 0; k < kSamples; ++k) {
-      now += from_seconds(kSamplePeriod_s);
-      world.advance(now);
-      for (Index m = 0; m < meters; ++m) sum[m] += world.meter_reading_lx(static_cast<std::size_t>(m));
+      pass(kSamplePeriod_s);
+      for (std::size_t m = 0; m < sum.size(); ++m) {
+        const double lux = world_.meter_reading_lx(m);
+        sum[m] += lux;
+        of_squares[m] += lux * lux;
+      }
     }
-    return VectorXd(sum / kSamples);
-  };
-  LampByLamp measured;
-  measured.truth_lx.resize(points, fixtures);
-  for (std::size_t f = 0; f < rig.fixtures.size(); ++f) world.set_drive(f, 0);
-  const VectorXd dark_lx = mean_of_meters();
-  for (Index j = 0; j < fixtures; ++j) {
-    world.set_drive(static_cast<std::size_t>(j), 1);
-    const VectorXd shown_lx = mean_of_meters();
-    for (Index p = 0; p < points; ++p) measured.truth_lx(p, j) = world.points()[static_cast<std::size_t>(p)].lux;
-    world.set_drive(static_cast<std::size_t>(j), 0);
-    for (Index m = 0; m < meters; ++m)
-      measured.readings.push_back({.receiver = rig.points.size() + static_cast<std::size_t>(m),
-                                   .meter = static_cast<std::size_t>(m),
-                                   .lux = shown_lx[m],
-                                   .standard_error_lx = std::hypot(0.02 * shown_lx[m] / std::sqrt(kSamples), 0.02),
-                                   .level = VectorXd::Unit(fixtures, j),
-                                   .fixed_lx = dark_lx[m]});
+    std::vector<std::optional<SteadyReading>> readings;
+    for (std::size_t m = 0; m < sum.size(); ++m) {
+      const double mean = sum[m] / kSamples;
+      const double variance = std::max(0.0, of_squares[m] / kSamples - mean * mean) / (kSamples - 1);
+      readings.emplace_back(SteadyReading{mean, std::sqrt(variance + kSmallestError_lx * kSmallestError_lx)});
+    }
+    return readings;
   }
-  return measured;
-}
+  /// True light at the points.
+  VectorXd truth_lx(std::span<const double> level) {
+    set(level);
+    const auto points = world_.points();
+    VectorXd lux(static_cast<Index>(rig_.points.size()));
+    for (Index p = 0; p < lux.size(); ++p) lux[p] = points[static_cast<std::size_t>(p)].lux;
+    return lux;
+  }
+  [[nodiscard]] double seconds() const { return to_seconds(now_.time_since_epoch()); }
+
+ private:
+  void pass(double seconds) {
+    now_ += from_seconds(seconds);
+    world_.advance(now_);
+  }
+  void set(std::span<const double> level) {
+    for (std::size_t f = 0; f < level.size(); ++f) world_.set_drive(f, drive_for(rig_.fixtures[f], level[f]));
+    pass(kSettle_s);
+  }
+
+  sim::World& world_;
+  const Rig& rig_;
+  Time now_;
+};
 
 /// A person holds a meter at places that are chosen one after the other, or at random.
 struct Hand {
@@ -74,9 +87,60 @@ struct Hand {
   Where where = Where::chosen;
 };
 
-Result<void> measure_by_hand(const Session& session, const LampByLamp& measured, const Hand& hand,
-                             const VectorXd& level, std::uint64_t seed, RigLight& light) {
-  const Rig& rig = session.rig;
+struct Case {
+  const char* method;
+  bool meters;
+  Hand hand;
+};
+
+constexpr Case kCases[] = {
+    {"as stated", false, {}},
+    {"meters", true, {}},
+    {"meters, 5 by hand", true, {5, Hand::Where::chosen}},
+    {"meters, 5 at random", true, {5, Hand::Where::random}},
+    {"8 by hand", false, {8, Hand::Where::chosen}},
+};
+
+/// What is measured once of a simulated rig, for all cases.
+struct MeasuredRig {
+  MeterRun run;
+  std::vector<double> used;  ///< levels of use, as sent
+  VectorXd truth_lx;         ///< of all lamps at those
+  MatrixXd alone_lx;         ///< points × fixtures: of each alone at its level of use
+  double rig_seconds = 0;    ///< that the run took
+};
+
+MeasuredRig measure_rig(sim::World& world, const Rig& rig, const MatrixXd& stated_lux) {
+  Bench bench(world, rig);
+  MeasuredRig measured{.run = MeterRun(rig, stated_lux), .used = std::vector<double>(rig.fixtures.size(), 0.0)};
+  while (const auto step = measured.run.next()) {
+    for (std::size_t f = 0; f < rig.fixtures.size(); ++f)
+      measured.used[f] = std::max(measured.used[f], std::min(kLevel, step->level[f]));
+    measured.run.take(step->level, bench.read(step->level));
+  }
+  measured.rig_seconds = bench.seconds();
+  std::vector<double> alone(rig.fixtures.size(), 0.0);
+  const VectorXd dark_lx = bench.truth_lx(alone);
+  measured.truth_lx = bench.truth_lx(measured.used) - dark_lx;
+  measured.alone_lx.resize(measured.truth_lx.size(), static_cast<Index>(rig.fixtures.size()));
+  for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
+    alone[f] = measured.used[f];
+    measured.alone_lx.col(static_cast<Index>(f)) = bench.truth_lx(alone) - dark_lx;
+    alone[f] = 0;
+  }
+  return measured;
+}
+
+/// Shares of full light at the levels of use, as far as a case knows them.
+VectorXd shares_of(const Rig& rig, const MeasuredRig& measured, bool meters) {
+  VectorXd share(static_cast<Index>(rig.fixtures.size()));
+  for (std::size_t f = 0; f < rig.fixtures.size(); ++f)
+    share[static_cast<Index>(f)] = share_at_level(meters ? measured.run.curve(f) : MeasuredCurve{}, measured.used[f]);
+  return share;
+}
+
+Result<void> measure_by_hand(const Rig& rig, const MeasuredRig& measured, const Hand& hand, const VectorXd& share,
+                             std::uint64_t seed, RigLight& light) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
   const double gain = std::exp(0.01 * normal(random));
@@ -85,20 +149,22 @@ Result<void> measure_by_hand(const Session& session, const LampByLamp& measured,
     std::size_t at = random() % rig.points.size();
     while (std::find(held.begin(), held.end(), at) != held.end()) at = random() % rig.points.size();
     if (hand.where == Hand::Where::chosen) {
-      const auto best = light.places_to_measure(level, 1, held);
+      const auto best = light.places_to_measure(share, 1, held);
       if (best.empty()) break;
       at = best.front();
     }
     held.push_back(at);
     std::vector<LightReading> readings;
-    for (Index j = 0; j < level.size(); ++j) {
-      const double true_lx = measured.truth_lx(static_cast<Index>(at), j);
-      const double error_lx = error_in_hand_lx(true_lx);
-      readings.push_back({.receiver = at,
-                          .meter = meter_in_hand(rig),
-                          .lux = std::max(0.0, gain * true_lx + error_lx * normal(random)),
-                          .standard_error_lx = error_lx,
-                          .level = VectorXd::Unit(level.size(), j)});
+    for (Index j = 0; j < share.size(); ++j) {
+      if (!(share[j] > 0)) continue;
+      const double true_lx = measured.alone_lx(static_cast<Index>(at), j);
+      LightReading reading;
+      reading.receiver = at;
+      reading.meter = meter_in_hand(rig);
+      reading.standard_error_lx = error_in_hand_lx(true_lx);
+      reading.lux = std::max(0.0, gain * true_lx + reading.standard_error_lx * normal(random));
+      reading.level = share[j] * VectorXd::Unit(share.size(), j);
+      readings.push_back(std::move(reading));
     }
     if (auto learnt = light.learn(readings); !learnt) return learnt;
   }
@@ -110,11 +176,11 @@ struct Errors {
   std::vector<double> in_errors;     ///< the same over the stated standard error
   std::vector<double> worst_of_rig;  ///< per rig
 
-  void add(const Rig& rig, const MatrixXd& truth_lx, const VectorXd& level, const RigLight& light) {
+  void add(const Rig& rig, const VectorXd& truth_lx, const VectorXd& level, const RigLight& light) {
     double worst = 0;
     for (std::size_t p = 0; p < rig.points.size(); ++p) {
       if (!rig.points[p].goal_lx) continue;
-      const double truth = truth_lx.row(static_cast<Index>(p)).dot(level);
+      const double truth = truth_lx[static_cast<Index>(p)];
       const LightEstimate found = light.known().at(p, level);
       share.push_back(std::abs(found.lux / truth - 1));
       in_errors.push_back(std::abs(found.lux - truth) / found.standard_error_lx);
@@ -135,20 +201,6 @@ double percentile(std::vector<double> values, double share) {
   std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(at), values.end());
   return values[at];
 }
-
-struct Case {
-  const char* method;
-  bool meters;
-  Hand hand;
-};
-
-constexpr Case kCases[] = {
-    {"as stated", false, {}},
-    {"meters", true, {}},
-    {"meters, 5 by hand", true, {5, Hand::Where::chosen}},
-    {"meters, 5 at random", true, {5, Hand::Where::random}},
-    {"8 by hand", false, {8, Hand::Where::chosen}},
-};
 
 }  // namespace
 
@@ -174,9 +226,9 @@ std::vector<BenchRow> bench_loop(const BenchOptions& options) {
   const auto stated = RigLight::of(*session, usual_priors(session->rig), compute);
   if (!stated) return failed(stated.error().detail);
 
-  const VectorXd level = VectorXd::Constant(static_cast<Index>(session->rig.fixtures.size()), kLevel);
   std::vector<Errors> errors(std::size(kCases));
   std::vector<double> seconds(std::size(kCases), 0.0);
+  double rig_seconds = 0;
   const int seeds = options.seeds.value_or(options.quick ? 2 : 20);
   for (int s = 0; s < seeds; ++s) {
     std::fprintf(stderr, "\rrig %d of %d ", s + 1, seeds);
@@ -184,16 +236,18 @@ std::vector<BenchRow> bench_loop(const BenchOptions& options) {
     real.seed = static_cast<std::uint64_t>(options.first_seed + s);
     auto world = sim::World::make(session->rig, real, kTruthError);
     if (!world) return failed(world.error().detail);
-    const LampByLamp measured = measure_lamps(**world, session->rig);
+    const MeasuredRig measured = measure_rig(**world, session->rig, stated->stated_lux());
+    rig_seconds = measured.rig_seconds;
     for (std::size_t c = 0; c < std::size(kCases); ++c) {
       const auto started = std::chrono::steady_clock::now();
       RigLight light = *stated;
+      const VectorXd share = shares_of(session->rig, measured, kCases[c].meters);
       if (kCases[c].meters)
-        if (auto learnt = light.learn(measured.readings); !learnt) return failed(learnt.error().detail);
-      if (auto learnt = measure_by_hand(*session, measured, kCases[c].hand, level, real.seed, light); !learnt)
+        if (auto learnt = light.learn(measured.run.readings()); !learnt) return failed(learnt.error().detail);
+      if (auto learnt = measure_by_hand(session->rig, measured, kCases[c].hand, share, real.seed, light); !learnt)
         return failed(learnt.error().detail);
       seconds[c] += std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count() / seeds;
-      errors[c].add(session->rig, measured.truth_lx, level, light);
+      errors[c].add(session->rig, measured.truth_lx, share, light);
     }
   }
   std::fprintf(stderr, "\n");
@@ -209,6 +263,7 @@ std::vector<BenchRow> bench_loop(const BenchOptions& options) {
                    {"within_5", fmt::format("{:.3f}", share_within(errors[c].share, 0.05))},
                    {"worst", fmt::format("{:.3f}", percentile(errors[c].worst_of_rig, 1))},
                    {"rigs_within_8", fmt::format("{:.2f}", share_within(errors[c].worst_of_rig, 0.08))},
+                   {"rig_seconds", kCases[c].meters ? fmt::format("{:.0f}", rig_seconds) : ""},
                    {"in_2_errors", fmt::format("{:.3f}", share_within(errors[c].in_errors, 2))}};
     rows.push_back(std::move(row));
   }

@@ -20,6 +20,7 @@
 #include "tools/command_line/completion.h"
 #include "tools/command_line/installed.h"
 #include "tools/luxrig/commands.h"
+#include "tools/luxrig/open_session.h"
 #include "tools/luxrig/render/dark_picture.h"
 #include "tools/luxrig/room_view.h"
 #include "tools/terminal/command.h"
@@ -72,7 +73,8 @@ PhotographLook look_of(const RenderOptions& options, const Picture& picture, std
 }  // namespace
 
 Checked<HungPlan> load_rig_for_picture(const RenderOptions& options) {
-  const auto rig = load_rig(options.rig);
+  auto rig = load_rig(options.rig);
+  if (rig) rig = with_calibration(std::move(*rig));
   if (!rig) return tl::unexpected(rig.error());
   return look_to_render(options, *rig);
 }

@@ -124,6 +124,7 @@ std::string status_json(const StatusInput& input) {
               {"round", show.round},
               {"rounds", rig.control.rounds},
               {"converged", show.converged}};
+  if (!rig.calibrated.empty()) out["calibrated"] = rig.calibrated;
   put_counts(out, show, rig.control.goal_tolerance);
   json& fixtures = out["fixtures"] = json::array();
   for (std::size_t i = 0; i < show.fixtures.size(); ++i) fixtures.push_back(fixture_json(rig, i, show.fixtures[i]));

@@ -1,0 +1,88 @@
+// luxrig calibrate, over the wire: what it measures of a simulated rig, and what it leaves behind.
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <fstream>
+
+#include "tests/tools/programs/live_rig.h"
+
+namespace luxrig::testing {
+namespace {
+
+std::vector<std::string> calibrate(const std::string& rig, int port) {
+  return {program("luxrig"), "calibrate", rig, "--port", std::to_string(port), "--max-error", "0.02"};
+}
+
+double squared(double x) { return x * x; }
+
+TEST(CalibrateOverTheWire, TheNextRunLightsByWhatWasMeasuredAndAStopLeavesNothing) {
+  const Folder folder;
+  std::filesystem::copy(source("tests/rigs/room"), folder / "room", std::filesystem::copy_options::recursive);
+  const std::string path = (folder / "room").string();
+  const auto found = folder / "room" / "calibration.json";
+  LiveRig rig(path);
+  ASSERT_TRUE(rig.wait_phase("holding", 90s)) << rig.daemon().output();
+  ASSERT_EQ(run({program("luxrig"), "level", "spot-1", "0.3", "--port", std::to_string(rig.port())}).code, 0);
+  const auto as_before = [](const json& s) {
+    return s["overrides"].size() == 1 && s["overrides"][0]["name"] == "spot-1" && s["overrides"][0]["level"] == 0.3;
+  };
+  ASSERT_TRUE(rig.wait_status(as_before, 10s));
+  {
+    Process stopped(calibrate(path, rig.port()), folder / "stopped.log");
+    ASSERT_TRUE(rig.wait_status([](const json& s) { return s["overrides"].size() == 3; }, 60s)) << stopped.output();
+    const Ran second = run(calibrate(path, rig.port()));
+    EXPECT_NE(second.code, 0);
+    EXPECT_NE(second.output.find("another luxrig calibrate measures this rig"), std::string::npos) << second.output;
+    stopped.signal(SIGTERM);
+    EXPECT_EQ(stopped.wait(30s), 1) << stopped.output();
+    EXPECT_TRUE(rig.wait_status(as_before, 10s)) << rig.last();
+    EXPECT_FALSE(std::filesystem::exists(found));
+  }
+  const Ran measured = run(calibrate(path, rig.port()));
+  ASSERT_EQ(measured.code, 0) << measured.output;
+  EXPECT_TRUE(rig.wait_status(as_before, 10s)) << rig.last();
+  const json calibration = json::parse(text_of(found), nullptr, false);
+  ASSERT_TRUE(calibration.is_object());
+  // Each lamp's own light against the truth, in standard errors: the whole rig's at least.
+  const json truth = rig.truth();
+  double chi_squared = 0;
+  for (const json& lamp : truth["fixtures"]) {
+    const json& output = calibration["fixtures"][lamp["name"].get<std::string>()]["output"];
+    chi_squared += squared((output[0].get<double>() - lamp["output"].get<double>()) / output[1].get<double>());
+    EXPECT_LT(output[1].get<double>(), 0.2) << lamp["name"];
+  }
+  EXPECT_LT(chi_squared, 3 * squared(3.5));
+
+  const Ran again = run(calibrate(path, rig.port()));
+  EXPECT_NE(again.code, 0) << "the daemon dims by the rig file, and the file beside it is another";
+  EXPECT_NE(again.output.find("restart the daemon"), std::string::npos) << again.output;
+
+  rig.daemon().signal(SIGTERM);
+  rig.daemon().wait(30s);
+  rig.start_daemon();
+  ASSERT_TRUE(rig.wait_phase("holding", 90s)) << rig.daemon().output();
+  EXPECT_EQ(rig.last()["calibrated"], calibration["made"]);
+  EXPECT_NE(rig.daemon().output().find("as calibrated"), std::string::npos) << rig.daemon().output();
+}
+
+TEST(Calibrate, IsRefusedWithoutADaemonOrLuxmeters) {
+  const Ran alone = run(calibrate(source("tests/rigs/room"), 1));
+  EXPECT_EQ(alone.code, 1) << alone.output;
+  EXPECT_NE(alone.output.find("luxrig"), std::string::npos) << alone.output;
+  EXPECT_EQ(run(calibrate(source("no/such/rig"), 1)).code, 2);
+}
+
+TEST(Calibrate, AWrongFileBesideTheRigIsSaidWithItsPlace) {
+  const Folder folder;
+  std::filesystem::copy(source("tests/rigs/room"), folder / "room", std::filesystem::copy_options::recursive);
+  std::ofstream(folder / "room" / "calibration.json")
+      << "{\"luxrig_calibration\": 1, \"rig\": \"room\", \"made\": \"today\",\n \"fixtures\": {\"gone\": {\"output\": "
+         "[1, 0]}}}\n";
+  const Ran refused = run({program("luxrig"), "evaluate", (folder / "room").string()});
+  EXPECT_EQ(refused.code, 2) << refused.output;
+  EXPECT_NE(refused.output.find("calibration.json"), std::string::npos) << refused.output;
+  EXPECT_NE(refused.output.find("the rig has no fixture \"gone\""), std::string::npos) << refused.output;
+}
+
+}  // namespace
+}  // namespace luxrig::testing
