@@ -46,7 +46,7 @@ Result<Picture> photograph(const RayScene& scene, const Rig& rig, const std::vec
   auto seen = render_picture(scene, emitters, levels, view_of(camera), how);
   if (!seen) return seen;
   seen->illuminance_lx.clear();
-  const double full = full_cd_m2(*seen);
+  const double full = full_cd_m2(*seen) * shot.underexposed;
   if (!(full > 0)) return seen;  // a dark room
   const double steps = std::exp2(sensor.bits) - 1;
   std::uint64_t sample = shot.number << 32;

@@ -29,6 +29,7 @@ struct Shot {
   int threads = 0;
   std::uint64_t seed = 1;
   std::uint64_t number = 0;  ///< of the shot: each has its own noise
+  double underexposed = 1;   ///< full scale is this many times what Sensor says: highlights are kept, shadows lost
 };
 
 /// scene   of the rig

@@ -19,6 +19,7 @@ void print_status(const json& status) {
   fmt::print("{}: {}{}{}: {}\n", text_of(status, "rig"), text_of(status, "phase"),
              flag_of(status, "blackout") ? ", BLACKOUT" : "", flag_of(status, "plan_waits") ? ", a plan waits" : "",
              text_of(status, "detail"));
+  if (const std::string made = text_of(status, "calibrated"); !made.empty()) fmt::print("as calibrated {}\n", made);
   for (const json& alarm : list_of(status, "alarms")) {
     fmt::print("{}  {} ({} s ago)\n", flag_of(alarm, "severe") ? "ALARM  " : "warning", text_of(alarm, "text"),
                shown(number_of(alarm, "since_s"), "{:.1f}"));

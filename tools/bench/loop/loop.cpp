@@ -4,16 +4,21 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <numeric>
 #include <optional>
 #include <random>
 #include <span>
 
 #include "core/calibration/meter_run.h"
 #include "core/calibration/rig_light.h"
+#include "core/calibration/seen_places.h"
 #include "core/output/dimming.h"
 #include "core/rig/rig_file.h"
+#include "core/tasks/scene_builder.h"
+#include "sim/devices/camera.h"
 #include "sim/world/world.h"
 #include "tools/bench/suites.h"
+#include "tools/luxrig/room_view.h"
 
 namespace luxrig {
 namespace {
@@ -91,6 +96,7 @@ struct Case {
   const char* method;
   bool meters;
   Hand hand;
+  bool camera = false;
 };
 
 constexpr Case kCases[] = {
@@ -99,7 +105,62 @@ constexpr Case kCases[] = {
     {"meters, 5 by hand", true, {5, Hand::Where::chosen}},
     {"meters, 5 at random", true, {5, Hand::Where::random}},
     {"8 by hand", false, {8, Hand::Where::chosen}},
+    {"meters, camera", true, {}, true},
+    {"camera, 1 by hand", false, {1, Hand::Where::chosen}, true},
 };
+
+/// What one camera sees of the rig.
+struct SeenRig {
+  PictureCamera camera;
+  std::vector<SeenPlace> places;
+  Session session;  ///< of the rig with a point at each place
+};
+
+constexpr int kPlaces = 120, kWidth_px = 640, kHeight_px = 400;
+constexpr int kPasses = 12;  // 25 pixels of a place: 300 samples
+constexpr double kBracket = 16, kFull = 0.95;
+constexpr double kFieldOfView_rad = 1.2;
+/// Of the factor between a picture and light, per material: paint, and the camera's scale.
+constexpr double kLogCamera = 0.2;
+/// Of a place's light by the camera, beside its noise: lens, and paint that is not the same all over.
+constexpr double kCameraError = 0.015, kDarkest_lx = 0.05;
+/// A place says nothing of a lamp that gives it less than this of its brightest.
+constexpr double kSeen = 0.02;
+
+Result<SeenRig> see(const Session& session) {
+  SeenRig seen;
+  std::vector<Joints> joints;
+  for (const Fixture& fixture : session.rig.fixtures) joints.push_back(fixture.joints);
+  const Camera view = automatic_camera(*session.rays, session.rig, joints, kWidth_px, kHeight_px, kFieldOfView_rad);
+  seen.camera.name = "bench";
+  seen.camera.position_world_m = view.eye_world_m;
+  seen.camera.aim_world_m = view.target_world_m;
+  seen.camera.vertical_fov_rad = view.vertical_fov_rad;
+  seen.camera.width_px = view.width_px;
+  seen.camera.height_px = view.height_px;
+  seen.places = seen_places(*session.rays, view, kPlaces);
+  auto with = session_of(with_places(session.rig, seen.places));
+  if (!with) return tl::unexpected(Fault{Cause::invalid, "", with.error().front().text(), {}});
+  seen.session = std::move(*with);
+  return seen;
+}
+
+/// Without a measured curve, an output at the level of use may be anything.
+constexpr double kLogOutputOfUnknownCurve = 0.7;
+
+LightPriors priors_of(const Rig& rig, bool curves) {
+  LightPriors priors = usual_priors(rig);
+  if (!curves) priors.log_output = kLogOutputOfUnknownCurve;
+  return priors;
+}
+
+LightPriors priors_with_camera(const Session& session, bool curves) {
+  LightPriors priors = priors_of(session.rig, curves);
+  const Index instruments = priors.log_meter.size(), materials = static_cast<Index>(session.scene.materials.size());
+  priors.log_meter.conservativeResize(instruments + materials);
+  priors.log_meter.tail(materials).setConstant(kLogCamera);
+  return priors;
+}
 
 /// What is measured once of a simulated rig, for all cases.
 struct MeasuredRig {
@@ -108,9 +169,13 @@ struct MeasuredRig {
   VectorXd truth_lx;         ///< of all lamps at those
   MatrixXd alone_lx;         ///< points × fixtures: of each alone at its level of use
   double rig_seconds = 0;    ///< that the run took
+  std::vector<std::vector<SeenLight>> seen;  ///< per fixture at its level of use: of each place
 };
 
-MeasuredRig measure_rig(sim::World& world, const Rig& rig, const MatrixXd& stated_lux) {
+Result<MeasuredRig> measure_rig(sim::World& world, const Session& session, const sim::Deviations& deviations,
+                                const MatrixXd& stated_lux, const SeenRig& seen) {
+  const Rig& rig = session.rig;
+  const RayScene true_rays(sim::true_scene(session.scene, rig, deviations));
   Bench bench(world, rig);
   MeasuredRig measured{.run = MeterRun(rig, stated_lux), .used = std::vector<double>(rig.fixtures.size(), 0.0)};
   while (const auto step = measured.run.next()) {
@@ -126,6 +191,27 @@ MeasuredRig measure_rig(sim::World& world, const Rig& rig, const MatrixXd& state
   for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
     alone[f] = measured.used[f];
     measured.alone_lx.col(static_cast<Index>(f)) = bench.truth_lx(alone) - dark_lx;
+    sim::Shot shot;
+    shot.seed = deviations.seed;
+    shot.number = f;
+    shot.passes = kPasses;
+    const auto picture = sim::photograph(true_rays, rig, world.fixtures(), {world.levels(), world.joints()},
+                                         seen.camera, sim::Sensor{}, shot);
+    if (!picture) return tl::unexpected(picture.error());
+    // Bracketed: where this exposure is full, the shorter one.
+    shot.underexposed = kBracket;
+    const auto shorter = sim::photograph(true_rays, rig, world.fixtures(), {world.levels(), world.joints()},
+                                         seen.camera, sim::Sensor{}, shot);
+    if (!shorter) return tl::unexpected(shorter.error());
+    float full = 0;
+    for (const Vec3f& pixel : picture->luminance_cd_m2) full = std::max(full, pixel.maxCoeff());
+    Picture merged = *picture;
+    for (std::size_t i = 0; i < merged.luminance_cd_m2.size(); ++i)
+      if (merged.luminance_cd_m2[i].maxCoeff() > kFull * full) merged.luminance_cd_m2[i] = shorter->luminance_cd_m2[i];
+    Picture dark = *picture;
+    for (Vec3f& pixel : dark.luminance_cd_m2) pixel.setZero();
+    measured.seen.emplace_back();
+    for (const SeenPlace& place : seen.places) measured.seen.back().push_back(seen_light(merged, dark, place));
     alone[f] = 0;
   }
   return measured;
@@ -139,12 +225,37 @@ VectorXd shares_of(const Rig& rig, const MeasuredRig& measured, bool meters) {
   return share;
 }
 
+/// What the camera saw, for a RigLight of the rig with its places.
+std::vector<LightReading> readings_of_camera(const Rig& rig, const MeasuredRig& measured, const SeenRig& seen,
+                                             const VectorXd& share) {
+  std::vector<LightReading> readings;
+  for (std::size_t f = 0; f < measured.seen.size(); ++f) {
+    const double level = share[static_cast<Index>(f)];
+    if (!(level > 0)) continue;
+    double brightest = 0;
+    for (const SeenLight& light : measured.seen[f]) brightest = std::max(brightest, light.lux);
+    for (std::size_t k = 0; k < seen.places.size(); ++k) {
+      const SeenLight& light = measured.seen[f][k];
+      if (light.lux < kSeen * brightest) continue;
+      LightReading reading;
+      reading.receiver = rig.points.size() + k;
+      reading.meter = meter_in_hand(rig) + 1 + seen.places[k].material;
+      reading.lux = light.lux;
+      reading.standard_error_lx = std::hypot(light.standard_error_lx, kCameraError * light.lux, kDarkest_lx);
+      reading.level = level * VectorXd::Unit(share.size(), static_cast<Index>(f));
+      readings.push_back(std::move(reading));
+    }
+  }
+  return readings;
+}
+
 Result<void> measure_by_hand(const Rig& rig, const MeasuredRig& measured, const Hand& hand, const VectorXd& share,
-                             std::uint64_t seed, RigLight& light) {
+                             std::uint64_t seed, std::size_t places, RigLight& light) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
   const double gain = std::exp(0.01 * normal(random));
-  std::vector<std::size_t> held;
+  std::vector<std::size_t> held(places);
+  std::iota(held.begin(), held.end(), rig.points.size());  // the camera's places are no points to hold a meter at
   for (int k = 0; k < hand.readings; ++k) {
     std::size_t at = random() % rig.points.size();
     while (std::find(held.begin(), held.end(), at) != held.end()) at = random() % rig.points.size();
@@ -226,6 +337,16 @@ std::vector<BenchRow> bench_loop(const BenchOptions& options) {
   const auto stated = RigLight::of(*session, usual_priors(session->rig), compute);
   if (!stated) return failed(stated.error().detail);
 
+  const auto seen = see(*session);
+  if (!seen) return failed(seen.error().detail);
+  const auto stated_seen = RigLight::of(seen->session, priors_with_camera(seen->session, true), compute);
+  if (!stated_seen) return failed(stated_seen.error().detail);
+  const auto uncurved = RigLight::of(*session, priors_of(session->rig, false), compute);
+  if (!uncurved) return failed(uncurved.error().detail);
+  const auto uncurved_seen = RigLight::of(seen->session, priors_with_camera(seen->session, false), compute);
+  if (!uncurved_seen) return failed(uncurved_seen.error().detail);
+  std::fprintf(stderr, "the camera sees %zu places\n", seen->places.size());
+
   std::vector<Errors> errors(std::size(kCases));
   std::vector<double> seconds(std::size(kCases), 0.0);
   double rig_seconds = 0;
@@ -236,15 +357,27 @@ std::vector<BenchRow> bench_loop(const BenchOptions& options) {
     real.seed = static_cast<std::uint64_t>(options.first_seed + s);
     auto world = sim::World::make(session->rig, real, kTruthError);
     if (!world) return failed(world.error().detail);
-    const MeasuredRig measured = measure_rig(**world, session->rig, stated->stated_lux());
+    const auto taken = measure_rig(**world, *session, real, stated->stated_lux(), *seen);
+    if (!taken) return failed(taken.error().detail);
+    const MeasuredRig& measured = *taken;
     rig_seconds = measured.rig_seconds;
     for (std::size_t c = 0; c < std::size(kCases); ++c) {
       const auto started = std::chrono::steady_clock::now();
-      RigLight light = *stated;
+      RigLight light = kCases[c].meters ? (kCases[c].camera ? *stated_seen : *stated)
+                                        : (kCases[c].camera ? *uncurved_seen : *uncurved);
       const VectorXd share = shares_of(session->rig, measured, kCases[c].meters);
-      if (kCases[c].meters)
-        if (auto learnt = light.learn(measured.run.readings()); !learnt) return failed(learnt.error().detail);
-      if (auto learnt = measure_by_hand(session->rig, measured, kCases[c].hand, share, real.seed, light); !learnt)
+      std::vector<LightReading> readings;
+      if (kCases[c].meters) readings = measured.run.readings();
+      if (kCases[c].camera) {
+        for (LightReading& reading : readings) reading.receiver += seen->places.size();
+        const auto of_camera = readings_of_camera(session->rig, measured, *seen, share);
+        readings.insert(readings.end(), of_camera.begin(), of_camera.end());
+      }
+      if (!readings.empty())
+        if (auto learnt = light.learn(readings); !learnt) return failed(learnt.error().detail);
+      if (auto learnt = measure_by_hand(session->rig, measured, kCases[c].hand, share, real.seed,
+                                        kCases[c].camera ? seen->places.size() : 0, light);
+          !learnt)
         return failed(learnt.error().detail);
       seconds[c] += std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count() / seeds;
       errors[c].add(session->rig, measured.truth_lx, share, light);

@@ -95,7 +95,9 @@ DaemonRig::~DaemonRig() {
   if (lock_ < 0) return;
   std::vector<std::string> names;
   for (const Fixture& fixture : rig_->fixtures) names.push_back(fixture.name);
-  (void)post("/api/release", {{"names", names}});
+  if (const auto released = post("/api/release", {{"names", names}}); !released)
+    fmt::print(stderr, "luxrig: {}; the light comes back by itself within {:.0f} s\n", released.error().detail,
+               kHeld_s);
   for (const json& held : held_before_) {
     if (text_of(held, "kind") != "level" || flag_of(held, "of_plan")) continue;
     json again = {{"fixtures", {text_of(held, "name")}}, {"level", number_of(held, "level").value_or(0)}};
