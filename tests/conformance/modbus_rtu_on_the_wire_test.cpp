@@ -141,8 +141,14 @@ TEST_P(LineFault, GivesNoWrongReadingAndClearsAsSoonAsItEnds) {
     const std::vector<Health> all = line.driver->health(line.now());
     return std::all_of(all.begin(), all.end(), [](const Health& device) { return device.life == Life::active; });
   };
-  for (const Time end = line.now() + from_seconds(4.5); line.now() < end && !well();) line.cycle(1.0);
+  const auto until_well = [&] {
+    for (const Time end = line.now() + from_seconds(4.5); line.now() < end && !well();) line.cycle(1.0);
+  };
+  until_well();
+  const std::uint64_t held_up = line.far.answers_held_up();
   line.run(0.4, 1.0);
+  // An answer that the machine holds up beyond the timeout is one more fault, which must clear as well.
+  if (line.far.answers_held_up() > held_up) until_well();
   EXPECT_TRUE(no_wrong_reading()) << "afterwards";
   for (const char* device : {"the-bus", "dimmer", "a", "b", "c"}) {
     EXPECT_EQ(line.health(device).life, Life::active) << device << ": " << line.health(device).detail;
