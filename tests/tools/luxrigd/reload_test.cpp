@@ -9,6 +9,7 @@
 #include "tests/tools/programs/process.h"
 #include "tools/luxrig/open_session.h"
 #include "tools/luxrigd/by_hand_names.h"
+#include "core/estimation/calibration.h"
 #include "tools/luxrigd/reload_check.h"
 #include "tools/luxrigd/rig_file_watch.h"
 
@@ -104,7 +105,7 @@ TEST_F(RoomThatChanges, OnlyOutputChangesNeedARestart) {
 
 TEST_F(RoomThatChanges, AFileIsReportedOnlyWhileItsContentDiffers) {
   const auto files = files_of(before_->rig);
-  EXPECT_EQ(files.size(), 2u) << "the rig file and its mesh";
+  EXPECT_EQ(files.size(), 3u) << "the rig file, its mesh, and the calibration that there may be";
   const RigFileWatch watch(files, std::chrono::milliseconds(20));
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
   EXPECT_TRUE(watch.changed().empty());
@@ -127,6 +128,8 @@ TEST_F(RoomThatChanges, AFileIsReportedOnlyWhileItsContentDiffers) {
   put_back();
   touch(15);
   EXPECT_TRUE(reported(1));
+  std::ofstream(calibration_file(before_->rig)) << "{}";
+  EXPECT_TRUE(reported(2));
 }
 
 TEST_F(RoomThatChanges, NamesMayHaveWildcardsAndUnknownOnesAreRefused) {
