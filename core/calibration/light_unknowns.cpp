@@ -18,6 +18,9 @@ constexpr double kArrived = 1e-9;
 /// Student's t with so many degrees of freedom: a reading 6 standard errors off weighs a ninth.
 constexpr double kFreedom = 4;
 
+/// Of a variance that is left, over that before: above, readings have told nothing.
+constexpr double kSaysSomething = 0.9;
+
 double weight_of(double surprise) { return std::min(1.0, (kFreedom + 1) / (kFreedom + surprise * surprise)); }
 
 }  // namespace
@@ -26,7 +29,9 @@ LightUnknowns::LightUnknowns(LightSensitivity sensitivity, LightPriors priors)
     : light_(std::move(sensitivity)), priors_(std::move(priors)) {
   check(light_);
   VectorXd sd(unknowns());
-  sd.head(fixtures()).setConstant(priors_.log_output);
+  for (Index f = 0; f < fixtures(); ++f)
+    sd[f] = std::hypot(priors_.log_output,
+                       priors_.read_at.size() > 0 ? priors_.dimmer_exponent * std::log(priors_.read_at[f]) : 0);
   for (Index j = 0; j < fixtures(); ++j) {
     sd.segment(mount_at(j), 3).setConstant(priors_.position_m);
     sd.segment(mount_at(j) + 3, 3).setConstant(priors_.angle_rad);
@@ -221,6 +226,11 @@ double LightUnknowns::gain(std::size_t fixture) const { return std::exp(value_[s
 
 double LightUnknowns::gain_standard_error(std::size_t fixture) const {
   return gain(fixture) * std::sqrt(variance_of(static_cast<Index>(fixture)));
+}
+
+bool LightUnknowns::gain_is_measured(std::size_t fixture) const {
+  const auto f = static_cast<Index>(fixture);
+  return variance_of(f) < kSaysSomething * prior_variance_[f];
 }
 
 VectorXd LightUnknowns::mount(std::size_t fixture) const {

@@ -43,6 +43,8 @@ struct LightSensitivity {
 /// Standard deviations before anything is measured.
 struct LightPriors {
   double log_output = 0.15;     ///< of a lamp over its rated flux
+  double dimmer_exponent = 0;   ///< of a dimmer whose curve is not measured
+  Eigen::VectorXd read_at{};    ///< per fixture: the level at which it is read, > 0; empty = 1
   double position_m = 0.05;     ///< per axis
   double angle_rad = 0.03;      ///< per axis
   double reflectance = 0.1;     ///< relative
@@ -87,6 +89,8 @@ class LightUnknowns {
   /// Output over rated flux.
   [[nodiscard]] double gain(std::size_t fixture) const;
   [[nodiscard]] double gain_standard_error(std::size_t fixture) const;
+  /// Readings have told something of it; else gain() is the rig file's.
+  [[nodiscard]] bool gain_is_measured(std::size_t fixture) const;
   /// How far the mount is off: kMountUnknowns entries.
   [[nodiscard]] Eigen::VectorXd mount(std::size_t fixture) const;
   [[nodiscard]] Eigen::VectorXd mount_standard_error(std::size_t fixture) const;

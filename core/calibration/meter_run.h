@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/calibration/lamp_steps.h"
 #include "core/calibration/light_unknowns.h"
 #include "core/calibration/rig_light.h"
 #include "core/estimation/calibration.h"
@@ -15,61 +16,42 @@
 
 namespace luxrig {
 
-/// Mean of a luxmeter's readings under steady light.
-struct SteadyReading {
-  double lux = 0, standard_error_lx = 0;
-};
-
 class MeterRun {
  public:
-  struct Step {
-    std::vector<double> level;  ///< per fixture, as asked for; limits may leave less
-    std::string what;           ///< for a person
-  };
-
-  /// stated_lux: RigLight::stated_lux(). It bounds the levels that are asked for, so that limits hold with lamps a third
-  /// stronger than stated.
-  MeterRun(const Rig& rig, const Eigen::MatrixXd& stated_lux);
+  /// brightest: brightest_levels(). Lamps at 0 are not measured.
+  MeterRun(const Rig& rig, std::span<const double> brightest);
 
   /// The light that is to be measured now; none = all is.
-  [[nodiscard]] std::optional<Step> next() const;
+  [[nodiscard]] std::optional<LampStep> next() const;
   [[nodiscard]] std::size_t steps() const { return plan_.size(); }
   [[nodiscard]] std::size_t done() const { return taken_.size(); }
-  /// What the meters showed under `next()`. level: per fixture, as sent. readings: per luxmeter; none = not steady, or gone.
-  void take(std::span<const double> level, std::span<const std::optional<SteadyReading>> readings);
+  /// What the meters showed under `next()`. level: of its fixture, as sent. readings: per luxmeter; none = not steady, or
+  /// gone.
+  void take(double level, std::span<const std::optional<SteadyReading>> readings);
 
-  /// Share of full light by level, of the lamps that a meter sees well enough; else empty. Of a lamp that a limit keeps
-  /// below full level, the maker's curve holds above.
-  [[nodiscard]] const MeasuredCurve& curve(std::size_t fixture) const { return curves_[fixture].of_level; }
-  [[nodiscard]] double curve_error(std::size_t fixture) const { return curves_[fixture].error; }
+  /// Per fixture; not measured of lamps that no meter sees well enough.
+  [[nodiscard]] const std::vector<LampCurve>& curves() const { return curves_; }
   /// For LightUnknowns: each lamp's brightest step. Call it when all is measured.
   [[nodiscard]] std::vector<LightReading> readings() const;
 
  private:
-  struct Asked {
-    std::size_t fixture = 0;
-    double level = 0;  ///< 0 = all are dark
-  };
   struct Taken {
     double level = 0;  ///< of that fixture, as sent
     std::vector<std::optional<SteadyReading>> readings;
   };
-  struct Curve {
-    MeasuredCurve of_level;
-    double error = 0;
-  };
-  void find_curves();
-  /// Of this step without the dark, by the last dark before it; none = not read, or not above its error.
+  /// Of the steps of one lamp, by the meter that sees it best.
+  [[nodiscard]] LampCurve curve_of_steps(std::size_t first, std::size_t end) const;
+  /// Of this step without the dark, by the last dark before it; none = not read.
   [[nodiscard]] std::optional<SteadyReading> above_dark(std::size_t step, std::size_t luxmeter) const;
 
   const Rig* rig_;
-  std::vector<Asked> plan_;
+  std::vector<LampStep> plan_;
   std::vector<Taken> taken_;
-  std::vector<Curve> curves_;
+  std::vector<LampCurve> curves_;
 };
 
-/// What was found, as a value. made: as in Calibration.
-[[nodiscard]] Calibration calibration_of(const Session& session, const RigLight& light, const MeterRun& run,
-                                         std::string made);
+/// What was found, as a value. curves: per fixture. made: as in Calibration.
+[[nodiscard]] Calibration calibration_of(const Session& session, const RigLight& light,
+                                         std::span<const LampCurve> curves, std::string made);
 
 }  // namespace luxrig

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/calibration/lamp_steps.h"
 #include "core/calibration/light_sensitivity.h"
 #include "core/calibration/next_measurement.h"
 
@@ -17,12 +18,17 @@ namespace {
 constexpr int kTakenAnew = 4;
 /// Mounts stand still if none moves by more than this, as a share of its standard deviation before.
 constexpr double kStandsStill = 0.02;
+/// A lamp that may not be lit has this level instead of none.
+constexpr double kDimmest = 0.01;
+/// Lamps are read one by one until no more than this share of what all would teach is left.
+constexpr double kWorthAReading = 0.05;
 
 }  // namespace
 
 LightPriors usual_priors(const Rig& rig) {
   LightPriors priors;
   priors.log_output = 0.12;
+  priors.dimmer_exponent = 0.5;
   priors.position_m = 0.05;
   priors.angle_rad = 0.035;
   priors.reflectance = 0.09;
@@ -51,7 +57,13 @@ Result<RigLight> RigLight::of(const Session& session, const LightPriors& priors,
   auto paint = paint_sensitivity(session.rig, session.scene, *light, options);
   if (!paint) return tl::unexpected(paint.error());
   sensitivity->paint = *paint;
-  return RigLight(session, priors, std::move(*light), std::move(*paint), std::move(*sensitivity));
+  const auto fixtures = static_cast<Index>(session.rig.fixtures.size());
+  LightPriors with_levels = priors;
+  if (priors.read_at.size() == 0) {
+    const std::vector<double> brightest = brightest_levels(session.rig, light->lux_per_level.leftCols(fixtures));
+    with_levels.read_at = Eigen::Map<const VectorXd>(brightest.data(), fixtures).cwiseMax(kDimmest);
+  }
+  return RigLight(session, std::move(with_levels), std::move(*light), std::move(*paint), std::move(*sensitivity));
 }
 
 Result<void> RigLight::learn(std::span<const LightReading> readings) {
@@ -77,38 +89,109 @@ Eigen::MatrixXd RigLight::stated_lux() const {
   return light_.lux_per_level.leftCols(static_cast<Index>(session_->rig.fixtures.size()));
 }
 
+GoalError RigLight::error_of_goals(const VectorXd& level) const {
+  GoalError error;
+  for (std::size_t p = 0; p < session_->rig.points.size(); ++p) {
+    if (!session_->rig.points[p].goal_lx) continue;
+    const LightEstimate light = known_.at(p, level);
+    if (!(light.lux > 0)) continue;
+    const double share = light.standard_error_lx / light.lux;
+    error.rms += share * share;
+    error.worst = std::max(error.worst, share);
+    ++error.goals;
+  }
+  if (error.goals > 0) error.rms = std::sqrt(error.rms / static_cast<double>(error.goals));
+  return error;
+}
+
+/// What the goals' error is made of: each goal's variance, relative to its light.
+struct RigLight::Goals {
+  std::vector<LightQuery> queries;
+  std::vector<Index> rows;
+  VectorXd weight;
+};
+
+RigLight::Goals RigLight::goals_under(const VectorXd& level) const {
+  Goals goals;
+  std::vector<double> weights;
+  for (std::size_t p = 0; p < session_->rig.points.size(); ++p) {
+    if (!session_->rig.points[p].goal_lx) continue;
+    const double lux = std::max(1e-3, known_.at(p, level).lux);
+    goals.rows.push_back(static_cast<Index>(goals.queries.size()));
+    weights.push_back(1 / (lux * lux));
+    goals.queries.push_back({p, level, {}});
+  }
+  goals.weight = Eigen::Map<const VectorXd>(weights.data(), static_cast<Index>(weights.size()));
+  return goals;
+}
+
+LightQuery RigLight::asked_in_hand(std::size_t point, std::size_t fixture) const {
+  return {point, VectorXd::Unit(light_.lux_per_level.cols(), static_cast<Index>(fixture)),
+          meter_in_hand(session_->rig)};
+}
+
 std::vector<std::size_t> RigLight::places_to_measure(const VectorXd& level, std::size_t count,
                                                      std::span<const std::size_t> but) const {
-  const Rig& rig = session_->rig;
-  std::vector<LightQuery> queries;
-  std::vector<Index> targets;
-  std::vector<double> weights;
-  for (std::size_t p = 0; p < rig.points.size(); ++p) {
-    if (!rig.points[p].goal_lx) continue;
-    const double lux = std::max(1e-3, known_.at(p, level).lux);
-    targets.push_back(static_cast<Index>(queries.size()));
-    weights.push_back(1 / (lux * lux));
-    queries.push_back({p, level, {}});
-  }
-  const VectorXd weight = Eigen::Map<const VectorXd>(weights.data(), static_cast<Index>(weights.size()));
+  Goals goals = goals_under(level);
   std::vector<MeasurementGroup> groups;
   std::vector<std::size_t> where;
-  for (std::size_t p = 0; p < rig.points.size(); ++p) {
+  for (std::size_t p = 0; p < session_->rig.points.size(); ++p) {
     if (std::find(but.begin(), but.end(), p) != but.end()) continue;
     MeasurementGroup group;
     group.noise_lx.resize(level.size());
     for (Index j = 0; j < level.size(); ++j) {
-      group.rows.push_back(static_cast<Index>(queries.size()));
-      queries.push_back({p, VectorXd::Unit(level.size(), j), meter_in_hand(rig)});
+      group.rows.push_back(static_cast<Index>(goals.queries.size()));
+      goals.queries.push_back(asked_in_hand(p, static_cast<std::size_t>(j)));
       group.noise_lx[j] = error_in_hand_lx(light_.lux_per_level(static_cast<Index>(p), j));
     }
     groups.push_back(std::move(group));
     where.push_back(p);
   }
   std::vector<std::size_t> places;
-  for (const std::size_t best : best_groups(known_.covariance(queries), targets, weight, groups, count))
+  for (const std::size_t best : best_groups(known_.covariance(goals.queries), goals.rows, goals.weight, groups, count))
     places.push_back(where[best]);
   return places;
+}
+
+std::vector<std::size_t> RigLight::lamps_to_read(std::size_t point, const VectorXd& level,
+                                                 std::span<const double> brightest) const {
+  Goals goals = goals_under(level);
+  std::vector<MeasurementGroup> singles;
+  std::vector<std::size_t> lamps;
+  MeasurementGroup all;
+  for (std::size_t f = 0; f < brightest.size(); ++f) {
+    if (!(brightest[f] > 0)) continue;
+    MeasurementGroup single;
+    single.rows = {static_cast<Index>(goals.queries.size())};
+    goals.queries.push_back(asked_in_hand(point, f));
+    // Of light at level 1, as the query; it is read at a level below.
+    const double lux = light_.lux_per_level(static_cast<Index>(point), static_cast<Index>(f));
+    single.noise_lx = VectorXd::Constant(1, error_in_hand_lx(lux * brightest[f]) / brightest[f]);
+    all.rows.push_back(single.rows.front());
+    singles.push_back(std::move(single));
+    lamps.push_back(f);
+  }
+  if (lamps.empty()) return lamps;
+  all.noise_lx.resize(static_cast<Index>(singles.size()));
+  for (std::size_t k = 0; k < singles.size(); ++k) all.noise_lx[static_cast<Index>(k)] = singles[k].noise_lx[0];
+
+  Eigen::MatrixXd covariance = known_.covariance(goals.queries);
+  const auto goal_variance = [&] {
+    double sum = 0;
+    for (Index t = 0; t < goals.weight.size(); ++t)
+      sum += goals.weight[t] *
+             covariance(goals.rows[static_cast<std::size_t>(t)], goals.rows[static_cast<std::size_t>(t)]);
+    return sum;
+  };
+  const double with_all = error_after(covariance, goals.rows, goals.weight, all);
+  const double worth = kWorthAReading * (goal_variance() - with_all);
+  std::vector<std::size_t> chosen;
+  for (const std::size_t next : best_groups(covariance, goals.rows, goals.weight, singles, singles.size())) {
+    if (goal_variance() - with_all <= worth) break;
+    take(singles[next], covariance);
+    chosen.push_back(lamps[next]);
+  }
+  return chosen;
 }
 
 }  // namespace luxrig

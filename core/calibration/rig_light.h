@@ -20,9 +20,16 @@ namespace luxrig {
 /// The instrument in the hand, in those priors.
 [[nodiscard]] inline std::size_t meter_in_hand(const Rig& rig) { return rig.luxmeters.size(); }
 
+/// Standard error of the light at the goals over that light: root mean square, and worst.
+struct GoalError {
+  double rms = 0, worst = 0;
+  std::size_t goals = 0;
+};
+
 class RigLight {
  public:
-  /// Traces the light, and anew for each material (seconds). The session must outlive it.
+  /// Traces the light, and anew for each material (seconds). The session must outlive it. Without levels in
+  /// the priors, lamps are taken to be read at their brightest_levels().
   [[nodiscard]] static Result<RigLight> of(const Session& session, const LightPriors& priors,
                                            const ComputeOptions& options);
 
@@ -32,12 +39,23 @@ class RigLight {
   /// The light as the rig file has it, at level 1: receivers (points, then luxmeters) × fixtures.
   [[nodiscard]] Eigen::MatrixXd stated_lux() const;
 
+  /// Under these levels. Goals without light are left out.
+  [[nodiscard]] GoalError error_of_goals(const Eigen::VectorXd& level) const;
+
   /// Points for a meter in the hand, best first: after every lamp is read there one by one, the light at the goals under
   /// `level` is known best, relative to what it is. At most `count`, none of `but`.
   [[nodiscard]] std::vector<std::size_t> places_to_measure(const Eigen::VectorXd& level, std::size_t count,
                                                            std::span<const std::size_t> but) const;
+  /// Lamps whose light alone is worth a reading at a point with a meter in the hand, the most telling first. The rest
+  /// would add less than a twentieth of what all teach. brightest: levels to light them at; lamps at 0 are left out.
+  [[nodiscard]] std::vector<std::size_t> lamps_to_read(std::size_t point, const Eigen::VectorXd& level,
+                                                       std::span<const double> brightest) const;
 
  private:
+  struct Goals;
+  /// The goals first among the queries.
+  [[nodiscard]] Goals goals_under(const Eigen::VectorXd& level) const;
+  [[nodiscard]] LightQuery asked_in_hand(std::size_t point, std::size_t fixture) const;
   RigLight(const Session& session, LightPriors priors, TransportMatrix light, std::vector<Eigen::MatrixXd> paint,
            LightSensitivity sensitivity);
 

@@ -1,8 +1,11 @@
 // luxrig calibrate, over the wire: what it measures of a simulated rig, and what it leaves behind.
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <csignal>
 #include <fstream>
+#include <regex>
 
 #include "tests/tools/programs/live_rig.h"
 
@@ -63,6 +66,86 @@ TEST(CalibrateOverTheWire, TheNextRunLightsByWhatWasMeasuredAndAStopLeavesNothin
   ASSERT_TRUE(rig.wait_phase("holding", 90s)) << rig.daemon().output();
   EXPECT_EQ(rig.last()["calibrated"], calibration["made"]);
   EXPECT_NE(rig.daemon().output().find("as calibrated"), std::string::npos) << rig.daemon().output();
+}
+
+/// A person who reads the true light wherever the program asks to hold the meter.
+class Person {
+ public:
+  explicit Person(const std::filesystem::path& pipe) {
+    EXPECT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    typed_ = ::open(pipe.c_str(), O_RDWR | O_CLOEXEC);  // opens without a reader too
+  }
+  ~Person() { ::close(typed_); }
+  Person(const Person&) = delete;
+  Person& operator=(const Person&) = delete;
+
+  void type(const std::string& line) const {
+    const std::string text = line + "\n";
+    EXPECT_EQ(::write(typed_, text.data(), text.size()), static_cast<ssize_t>(text.size()));
+  }
+  /// Answers every question so far that has no answer yet.
+  void answer(const std::string& output, const json& truth) {
+    static const std::regex asked("Hold the luxmeter at \"([^\"]+)\"|  [0-9]+ of [0-9]+, [^:\n]*: ");
+    int questions = 0;
+    for (std::sregex_iterator it(output.begin(), output.end(), asked), end; it != end; ++it) {
+      if ((*it)[1].matched) {
+        place_ = (*it)[1];
+        continue;
+      }
+      if (++questions <= answered_) continue;
+      for (const json& point : truth["points"])
+        if (point["name"] == place_) type(std::to_string(point["lux"].get<double>()));
+      ++answered_;
+    }
+  }
+
+ private:
+  int typed_ = -1, answered_ = 0;
+  std::string place_;
+};
+
+int count_of(const std::string& text, const std::string& part) {
+  int count = 0;
+  for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+  return count;
+}
+
+TEST(CalibrateOverTheWire, ByHandItSaysWhereToHoldTheMeterAndHowWellItKnowsTheLightThen) {
+  const Folder folder;
+  std::filesystem::copy(source("tests/rigs/room"), folder / "room", std::filesystem::copy_options::recursive);
+  const std::string path = (folder / "room").string();
+  LiveRig rig(path);
+  ASSERT_TRUE(rig.wait_phase("holding", 90s)) << rig.daemon().output();
+  Person person(folder / "typed");
+  std::vector<std::string> words = {"/bin/sh", "-c", "exec \"$0\" \"$@\" < " + (folder / "typed").string()};
+  for (const std::string& word : calibrate(path, rig.port())) words.push_back(word);
+  words.emplace_back("--hand");
+  Process asking(words, folder / "asking.log");
+  const auto known = [&] { return count_of(asking.output(), "Now the light at"); };
+  ASSERT_TRUE(wait_for(
+      [&] {
+        person.answer(asking.output(), rig.truth());
+        return known() >= 1 || asking.output().find("no further place") != std::string::npos;
+      },
+      180s))
+      << asking.output();
+  EXPECT_GE(known(), 1) << asking.output();
+  person.type("q");
+  ASSERT_EQ(asking.wait(60s), 0) << asking.output();
+  const json calibration = json::parse(text_of(folder / "room" / "calibration.json"), nullptr, false);
+  ASSERT_TRUE(calibration.is_object()) << asking.output();
+  const json truth = rig.truth();
+  double chi_squared = 0;
+  int found = 0;
+  for (const json& lamp : truth["fixtures"]) {
+    const json& output = calibration["fixtures"][lamp["name"].get<std::string>()]["output"];
+    if (!(output[1].get<double>() > 0)) continue;  // no reading told of it
+    EXPECT_LT(output[1].get<double>(), 0.2) << lamp["name"];
+    chi_squared += squared((output[0].get<double>() - lamp["output"].get<double>()) / output[1].get<double>());
+    ++found;
+  }
+  EXPECT_LT(chi_squared, 3 * squared(3.5)) << asking.output();
+  EXPECT_GE(found, 1) << asking.output();
 }
 
 TEST(Calibrate, IsRefusedWithoutADaemonOrLuxmeters) {

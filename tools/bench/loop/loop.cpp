@@ -145,17 +145,15 @@ Result<SeenRig> see(const Session& session) {
   return seen;
 }
 
-/// Without a measured curve, an output at the level of use may be anything.
-constexpr double kLogOutputOfUnknownCurve = 0.7;
-
-LightPriors priors_of(const Rig& rig, bool curves) {
+/// Lamps are read at their level of use by hand and by camera.
+LightPriors priors_of(const Rig& rig, const std::vector<double>& used) {
   LightPriors priors = usual_priors(rig);
-  if (!curves) priors.log_output = kLogOutputOfUnknownCurve;
+  priors.read_at = Eigen::Map<const VectorXd>(used.data(), static_cast<Index>(used.size())).cwiseMax(0.01);
   return priors;
 }
 
-LightPriors priors_with_camera(const Session& session, bool curves) {
-  LightPriors priors = priors_of(session.rig, curves);
+LightPriors priors_with_camera(const Session& session, const std::vector<double>& used) {
+  LightPriors priors = priors_of(session.rig, used);
   const Index instruments = priors.log_meter.size(), materials = static_cast<Index>(session.scene.materials.size());
   priors.log_meter.conservativeResize(instruments + materials);
   priors.log_meter.tail(materials).setConstant(kLogCamera);
@@ -172,17 +170,18 @@ struct MeasuredRig {
   std::vector<std::vector<SeenLight>> seen;  ///< per fixture at its level of use: of each place
 };
 
+std::vector<double> levels_of_use(std::vector<double> brightest) {
+  for (double& level : brightest) level = std::min(kLevel, level);
+  return brightest;
+}
+
 Result<MeasuredRig> measure_rig(sim::World& world, const Session& session, const sim::Deviations& deviations,
-                                const MatrixXd& stated_lux, const SeenRig& seen) {
+                                const std::vector<double>& brightest, const SeenRig& seen) {
   const Rig& rig = session.rig;
   const RayScene true_rays(sim::true_scene(session.scene, rig, deviations));
   Bench bench(world, rig);
-  MeasuredRig measured{.run = MeterRun(rig, stated_lux), .used = std::vector<double>(rig.fixtures.size(), 0.0)};
-  while (const auto step = measured.run.next()) {
-    for (std::size_t f = 0; f < rig.fixtures.size(); ++f)
-      measured.used[f] = std::max(measured.used[f], std::min(kLevel, step->level[f]));
-    measured.run.take(step->level, bench.read(step->level));
-  }
+  MeasuredRig measured{MeterRun(rig, brightest), levels_of_use(brightest), {}, {}, 0, {}};
+  while (const auto step = measured.run.next()) measured.run.take(step->level, bench.read(levels_of(*step, rig)));
   measured.rig_seconds = bench.seconds();
   std::vector<double> alone(rig.fixtures.size(), 0.0);
   const VectorXd dark_lx = bench.truth_lx(alone);
@@ -221,7 +220,8 @@ Result<MeasuredRig> measure_rig(sim::World& world, const Session& session, const
 VectorXd shares_of(const Rig& rig, const MeasuredRig& measured, bool meters) {
   VectorXd share(static_cast<Index>(rig.fixtures.size()));
   for (std::size_t f = 0; f < rig.fixtures.size(); ++f)
-    share[static_cast<Index>(f)] = share_at_level(meters ? measured.run.curve(f) : MeasuredCurve{}, measured.used[f]);
+    share[static_cast<Index>(f)] =
+        share_at_level(meters ? measured.run.curves()[f].of_level : MeasuredCurve{}, measured.used[f]);
   return share;
 }
 
@@ -266,8 +266,8 @@ Result<void> measure_by_hand(const Rig& rig, const MeasuredRig& measured, const 
     }
     held.push_back(at);
     std::vector<LightReading> readings;
-    for (Index j = 0; j < share.size(); ++j) {
-      if (!(share[j] > 0)) continue;
+    for (const std::size_t lamp : light.lamps_to_read(at, share, measured.used)) {
+      const auto j = static_cast<Index>(lamp);
       const double true_lx = measured.alone_lx(static_cast<Index>(at), j);
       LightReading reading;
       reading.receiver = at;
@@ -334,17 +334,17 @@ std::vector<BenchRow> bench_loop(const BenchOptions& options) {
   ComputeOptions compute;
   compute.max_error = kTransportError;
   compute.threads = options.threads;
-  const auto stated = RigLight::of(*session, usual_priors(session->rig), compute);
+  const auto traced = compute_transport(*session, compute);
+  if (!traced) return failed(traced.error().detail);
+  const std::vector<double> brightest =
+      brightest_levels(session->rig, traced->lux_per_level.leftCols(static_cast<Index>(session->rig.fixtures.size())));
+  const std::vector<double> used = levels_of_use(brightest);
+  const auto stated = RigLight::of(*session, priors_of(session->rig, used), compute);
   if (!stated) return failed(stated.error().detail);
-
   const auto seen = see(*session);
   if (!seen) return failed(seen.error().detail);
-  const auto stated_seen = RigLight::of(seen->session, priors_with_camera(seen->session, true), compute);
+  const auto stated_seen = RigLight::of(seen->session, priors_with_camera(seen->session, used), compute);
   if (!stated_seen) return failed(stated_seen.error().detail);
-  const auto uncurved = RigLight::of(*session, priors_of(session->rig, false), compute);
-  if (!uncurved) return failed(uncurved.error().detail);
-  const auto uncurved_seen = RigLight::of(seen->session, priors_with_camera(seen->session, false), compute);
-  if (!uncurved_seen) return failed(uncurved_seen.error().detail);
   std::fprintf(stderr, "the camera sees %zu places\n", seen->places.size());
 
   std::vector<Errors> errors(std::size(kCases));
@@ -357,14 +357,13 @@ std::vector<BenchRow> bench_loop(const BenchOptions& options) {
     real.seed = static_cast<std::uint64_t>(options.first_seed + s);
     auto world = sim::World::make(session->rig, real, kTruthError);
     if (!world) return failed(world.error().detail);
-    const auto taken = measure_rig(**world, *session, real, stated->stated_lux(), *seen);
+    const auto taken = measure_rig(**world, *session, real, brightest, *seen);
     if (!taken) return failed(taken.error().detail);
     const MeasuredRig& measured = *taken;
     rig_seconds = measured.rig_seconds;
     for (std::size_t c = 0; c < std::size(kCases); ++c) {
       const auto started = std::chrono::steady_clock::now();
-      RigLight light = kCases[c].meters ? (kCases[c].camera ? *stated_seen : *stated)
-                                        : (kCases[c].camera ? *uncurved_seen : *uncurved);
+      RigLight light = kCases[c].camera ? *stated_seen : *stated;
       const VectorXd share = shares_of(session->rig, measured, kCases[c].meters);
       std::vector<LightReading> readings;
       if (kCases[c].meters) readings = measured.run.readings();

@@ -11,6 +11,9 @@
 #include <thread>
 #include <utility>
 
+#include "core/estimation/calibration.h"
+#include "core/output/dimming.h"
+#include "tools/luxrig/open_session.h"
 #include "tools/process/meeting_place.h"
 #include "tools/process/runtime_folder.h"
 #include "tools/process/status_fields.h"
@@ -33,6 +36,10 @@ constexpr auto kLongestSampling = 8s;
 constexpr double kSameLevel = 1e-3, kSmallestError_lx = 0.02;
 /// Samples that still wander by more than this, as a share and in standard errors, are not steady.
 constexpr double kWanders = 0.02, kWandersErrors = 4;
+
+std::string calibration_words(const std::string& made) {
+  return made.empty() ? "no calibration" : fmt::format("the calibration of {}", made);
+}
 
 Fault fault(Cause cause, std::string detail) { return {cause, "", std::move(detail), {}}; }
 
@@ -62,8 +69,9 @@ DaemonRig::DaemonRig(DaemonRig&& other) noexcept
     : daemon_(std::move(other.daemon_)),
       rig_(other.rig_),
       lock_(std::exchange(other.lock_, -1)),
-      calibrated_(std::move(other.calibrated_)),
-      held_before_(std::move(other.held_before_)) {}
+      dimmed_as_(std::move(other.dimmed_as_)),
+      held_before_(std::move(other.held_before_)),
+      held_(std::move(other.held_)) {}
 
 Result<DaemonRig> DaemonRig::of(const ClientArguments& client, const Rig& rig) {
   auto daemon = daemon_on(client.port, client.token);
@@ -87,7 +95,15 @@ Result<DaemonRig> DaemonRig::of(const ClientArguments& client, const Rig& rig) {
   if (flag_of(*status, "blackout"))
     return tl::unexpected(fault(Cause::invalid, "there is a blackout; lift it first: luxrig blackout off"));
   connected.held_before_ = list_of(*status, "overrides");
-  connected.calibrated_ = text_of(*status, "calibrated");
+  // A calibrated daemon's levels are shares of true light. What is measured is over the rig file.
+  auto in_use = with_calibration(rig);
+  if (!in_use) return tl::unexpected(fault(Cause::invalid, in_use.error().front().text()));
+  if (text_of(*status, "calibrated") != in_use->calibrated)
+    return tl::unexpected(
+        fault(Cause::invalid, fmt::format("the daemon lights by {}, {} holds {}; restart the daemon, and measure then",
+                                          calibration_words(text_of(*status, "calibrated")),
+                                          calibration_file(rig).string(), calibration_words(in_use->calibrated))));
+  connected.dimmed_as_ = std::move(in_use->fixtures);
   return connected;
 }
 
@@ -123,53 +139,63 @@ Result<void> DaemonRig::post(const char* route, const json& body) const {
       fault(Cause::invalid, "refused by the daemon: " + text_of(json::parse(answer->body, nullptr, false), "error")));
 }
 
-Result<DaemonRig::Seen> DaemonRig::measure(std::span<const double> level, const std::stop_token& stop) {
-  const auto stopped = [] { return tl::unexpected(fault(Cause::cancelled, "stopped")); };
-  if (auto held = post("/api/level", {{"fixtures", {"*"}}, {"level", 0}, {"for_s", kHeld_s}}); !held)
-    return tl::unexpected(held.error());
+Result<void> DaemonRig::hold(std::span<const double> level) const {
+  if (auto dark = post("/api/level", {{"fixtures", {"*"}}, {"level", 0}, {"for_s", kHeld_s}}); !dark) return dark;
   for (std::size_t f = 0; f < level.size(); ++f) {
     if (!(level[f] > 0)) continue;
     const json one = {{"fixtures", {rig_->fixtures[f].name}}, {"level", level[f]}, {"for_s", kHeld_s}};
-    if (auto held = post("/api/level", one); !held) return tl::unexpected(held.error());
+    if (auto lit = post("/api/level", one); !lit) return lit;
   }
-  // Until what is sent stands still. A limit may leave less than was asked for, never more.
-  Seen seen;
+  return {};
+}
+
+Result<std::vector<double>> DaemonRig::light(std::span<const double> level, const std::stop_token& stop) {
+  held_.clear();
+  for (std::size_t f = 0; f < level.size(); ++f)
+    held_.push_back(share_at_level(dimmed_as_[f].measured_curve, level[f]));
+  if (auto held = hold(held_); !held) return tl::unexpected(held.error());
   const auto begun = Clock::now();
   auto still_since = begun;
-  std::vector<double> before;
+  std::vector<double> sent, before;
   for (;;) {
-    if (stop.stop_requested()) return stopped();
+    if (stop.stop_requested()) return tl::unexpected(fault(Cause::cancelled, "stopped"));
     std::this_thread::sleep_for(kPoll);
     const auto now = status();
     if (!now) return tl::unexpected(now.error());
     if (flag_of(*now, "blackout")) return tl::unexpected(fault(Cause::invalid, "somebody has called a blackout"));
-    seen.level.clear();
+    sent.clear();
     bool arrived = true;
     for (const json& fixture : list_of(*now, "fixtures")) {
-      const std::size_t f = seen.level.size();
-      const double sent = number_of(fixture, "level").value_or(NAN);
-      arrived = arrived && f < level.size() && sent <= level[f] + kSameLevel &&
-                std::abs(sent - number_of(fixture, "target_level").value_or(NAN)) < kSameLevel;
-      seen.level.push_back(sent);
+      const std::size_t f = sent.size();
+      const double is = number_of(fixture, "level").value_or(NAN);
+      arrived = arrived && f < held_.size() && is <= held_[f] + kSameLevel &&
+                std::abs(is - number_of(fixture, "target_level").value_or(NAN)) < kSameLevel;
+      sent.push_back(is);
     }
-    if (seen.level.size() != level.size())
+    if (sent.size() != level.size())
       return tl::unexpected(fault(Cause::invalid, "the daemon's rig has other fixtures than the file"));
-    if (!arrived || seen.level != before) still_since = Clock::now();
-    before = seen.level;
-    if (arrived && Clock::now() - still_since >= kSettles) break;
+    if (!arrived || sent != before) still_since = Clock::now();
+    before = sent;
+    if (arrived && Clock::now() - still_since >= kSettles) {
+      for (std::size_t f = 0; f < sent.size(); ++f) sent[f] = level_of_share(dimmed_as_[f].measured_curve, sent[f]);
+      return sent;
+    }
     if (Clock::now() - begun > kLongestWait)
       return tl::unexpected(fault(Cause::system, "the light does not come to rest; luxrig status says why"));
   }
+}
+
+Result<std::vector<std::optional<SteadyReading>>> DaemonRig::read(const std::stop_token& stop) const {
   // A reading counts once: its age goes back when the next one comes.
   const std::size_t meters = rig_->luxmeters.size();
   std::vector<std::vector<double>> samples(meters);
   std::vector<double> age_s(meters, 0.0);
-  const auto sampling = Clock::now();
+  const auto begun = Clock::now();
   const auto enough = [&] {
     return std::all_of(samples.begin(), samples.end(), [](const auto& of) { return of.size() >= kSamples; });
   };
-  while (!enough() && Clock::now() - sampling < kLongestSampling) {
-    if (stop.stop_requested()) return stopped();
+  while (!enough() && Clock::now() - begun < kLongestSampling) {
+    if (stop.stop_requested()) return tl::unexpected(fault(Cause::cancelled, "stopped"));
     std::this_thread::sleep_for(kPoll);
     const auto now = status();
     if (!now) return tl::unexpected(now.error());
@@ -180,8 +206,9 @@ Result<DaemonRig::Seen> DaemonRig::measure(std::span<const double> level, const 
       age_s[m] = age.value_or(0);
     }
   }
-  for (const auto& of_meter : samples) seen.readings.push_back(steady(of_meter));
-  return seen;
+  std::vector<std::optional<SteadyReading>> readings;
+  for (const auto& of_meter : samples) readings.push_back(steady(of_meter));
+  return readings;
 }
 
 }  // namespace luxrig

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "core/calibration/meter_run.h"
+#include "core/calibration/lamp_steps.h"
 #include "core/rig/rig.h"
 #include "tools/http/client.h"
 #include "tools/process/client.h"
@@ -21,33 +21,35 @@ namespace luxrig {
 /// daemon goes back to its look by itself.
 class DaemonRig {
  public:
-  /// A fault without a daemon, for another rig's, or while another program measures.
+  /// A fault without a daemon, for another rig's, for one that lights by another calibration than the file beside the rig
+  /// file, or while another program measures. rig: as in its file; levels below are in its terms.
   [[nodiscard]] static Result<DaemonRig> of(const ClientArguments& client, const Rig& rig);
   /// Gives the light back as it was: what this held is released, what a person held is held again.
   ~DaemonRig();
   DaemonRig(DaemonRig&& other) noexcept;
   DaemonRig& operator=(DaemonRig&&) = delete;
 
-  struct Seen {
-    std::vector<double> level;  ///< per fixture, as sent
-    std::vector<std::optional<SteadyReading>> readings;
-  };
-  /// When the calibration was made by which the daemon dims; empty = it has none.
-  [[nodiscard]] const std::string& calibrated() const { return calibrated_; }
-
-  /// Holds these levels, waits until they are sent and every meter stands still, and reads.
-  [[nodiscard]] Result<Seen> measure(std::span<const double> level, const std::stop_token& stop);
+  /// Holds these levels, and waits until they are sent and the light stands still. Per fixture, as sent: a limit may leave
+  /// less than is asked for.
+  [[nodiscard]] Result<std::vector<double>> light(std::span<const double> level, const std::stop_token& stop);
+  /// Holds the same levels for longer. Call it every kHoldAgain while a person is waited for.
+  [[nodiscard]] Result<void> hold_again() const { return hold(held_); }
+  static constexpr std::chrono::seconds kHoldAgain{15};
+  /// Per luxmeter: none = not steady, or gone.
+  [[nodiscard]] Result<std::vector<std::optional<SteadyReading>>> read(const std::stop_token& stop) const;
 
  private:
   DaemonRig(HttpPeer daemon, const Rig& rig, int lock, nlohmann::json held_before);
   [[nodiscard]] Result<nlohmann::json> status() const;
+  [[nodiscard]] Result<void> hold(std::span<const double> level) const;
   [[nodiscard]] Result<void> post(const char* route, const nlohmann::json& body) const;
 
   HttpPeer daemon_;
   const Rig* rig_;
   int lock_ = -1;               ///< a locked file
-  std::string calibrated_{};
+  std::vector<Fixture> dimmed_as_{};  ///< by the calibration in use
   nlohmann::json held_before_;  ///< "overrides" of the status
+  std::vector<double> held_{};
 };
 
 }  // namespace luxrig

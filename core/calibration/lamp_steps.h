@@ -1,0 +1,52 @@
+#pragma once
+/// One lamp at a time, at a few levels: which levels, and the dimmer's curve that follows from light read at them.
+
+#include <Eigen/Core>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/rig/rig.h"
+
+namespace luxrig {
+
+/// Light of one fixture alone; level 0 = every lamp is dark.
+struct LampStep {
+  std::size_t fixture = 0;
+  double level = 0;
+};
+
+/// For a person: "spot-3" alone at level 0.62.
+[[nodiscard]] std::string words_of(const LampStep& step, const Rig& rig);
+/// Levels of all fixtures.
+[[nodiscard]] std::vector<double> levels_of(const LampStep& step, const Rig& rig);
+
+/// Per fixture, the brightest level at which it may be measured alone: lamps may be a third stronger than stated, and no
+/// limit is exceeded. stated_lux: RigLight::stated_lux().
+[[nodiscard]] std::vector<double> brightest_levels(const Rig& rig, const Eigen::MatrixXd& stated_lux);
+
+/// Shares of the brightest level at which a curve is read, brightest first. Few: between any two a dimmer is nearly a
+/// power.
+inline constexpr double kCurveShares[] = {1, 0.5, 0.25, 0.1, 0.05};
+
+/// Mean of a luxmeter's readings under steady light.
+struct SteadyReading {
+  double lux = 0, standard_error_lx = 0;
+};
+
+/// A reading under one lamp at this level, the dark taken off.
+struct ReadAtLevel {
+  double level = 0;
+  SteadyReading light;
+};
+
+struct LampCurve {
+  MeasuredCurve of_level{};  ///< share of full light by level; empty = not measured, the maker's holds
+  double error = 0;          ///< standard error of a share, relative
+};
+
+/// brightest_first: all by the same meter at the same place. Readings that are too uncertain for a curve are left out.
+/// Of a lamp that a limit keeps below full level, the maker's curve holds above.
+[[nodiscard]] LampCurve curve_of(std::span<const ReadAtLevel> brightest_first);
+
+}  // namespace luxrig
