@@ -28,10 +28,7 @@ double weight_of(double surprise) { return std::min(1.0, (kFreedom + 1) / (kFree
 LightUnknowns::LightUnknowns(LightSensitivity sensitivity, LightPriors priors)
     : light_(std::move(sensitivity)), priors_(std::move(priors)) {
   check(light_);
-  VectorXd sd(unknowns());
-  for (Index f = 0; f < fixtures(); ++f)
-    sd[f] = std::hypot(priors_.log_output,
-                       priors_.read_at.size() > 0 ? priors_.dimmer_exponent * std::log(priors_.read_at[f]) : 0);
+  VectorXd sd = VectorXd::Zero(unknowns());
   for (Index j = 0; j < fixtures(); ++j) {
     sd.segment(mount_at(j), 3).setConstant(priors_.position_m);
     sd.segment(mount_at(j) + 3, 3).setConstant(priors_.angle_rad);
@@ -39,8 +36,24 @@ LightUnknowns::LightUnknowns(LightSensitivity sensitivity, LightPriors priors)
   sd.segment(paint_at(0), materials()).setConstant(priors_.reflectance);
   sd.tail(meters()) = priors_.log_meter;
   prior_variance_ = sd.cwiseAbs2();
+  take_output_priors();
   value_.setZero(unknowns());
   taken_at_.setZero(kMountUnknowns * fixtures());
+  estimate();
+}
+
+void LightUnknowns::take_output_priors() {
+  for (Index f = 0; f < fixtures(); ++f) {
+    const double of_dimmer = priors_.read_at.size() > 0 ? priors_.dimmer_exponent * std::log(priors_.read_at[f]) : 0;
+    prior_variance_[f] = priors_.log_output * priors_.log_output + of_dimmer * of_dimmer;
+  }
+}
+
+void LightUnknowns::read_at(const VectorXd& level) {
+  LUXRIG_CHECK(level.size() == fixtures() && readings_.empty(), "levels of {} of {} fixtures, {} readings",
+               level.size(), fixtures(), readings_.size());
+  priors_.read_at = level;
+  take_output_priors();
   estimate();
 }
 

@@ -69,6 +69,7 @@ struct LightReading {
 
 struct LightEstimate {
   double lux = 0, standard_error_lx = 0;
+  [[nodiscard]] double share_of_error() const { return lux > 0 ? standard_error_lx / lux : 0; }
 };
 
 class LightUnknowns {
@@ -76,6 +77,9 @@ class LightUnknowns {
   /// Sizes of both must agree (asserted).
   LightUnknowns(LightSensitivity sensitivity, LightPriors priors);
 
+  /// LightPriors::read_at, as it turned out: a dimmer whose curve is measured is known up to where it was read. Before
+  /// the first reading is learnt (asserted).
+  void read_at(const Eigen::VectorXd& level);
   /// Adds readings and estimates anew from all of them.
   void learn(std::span<const LightReading> readings);
   /// Light and its change at the mounts found so far (mount()), in place of those at the mounts of the file.
@@ -100,7 +104,9 @@ class LightUnknowns {
   /// Reading over light.
   [[nodiscard]] double meter_gain(std::size_t meter) const;
   [[nodiscard]] double meter_gain_standard_error(std::size_t meter) const;
-  /// Of the last estimate: by how many standard errors each reading is off what all together say.
+  /// All that were learnt, in order.
+  [[nodiscard]] const std::vector<LightReading>& readings() const { return readings_; }
+  /// Of the last estimate, per reading: by how many standard errors it is off what all together say.
   [[nodiscard]] const std::vector<double>& surprise() const { return surprise_; }
 
  private:
@@ -113,6 +119,7 @@ class LightUnknowns {
   [[nodiscard]] Eigen::Index unknowns() const { return meter_at(meters()); }
 
   void check(const LightSensitivity& sensitivity) const;
+  void take_output_priors();
   [[nodiscard]] std::size_t place_of(std::size_t receiver) const;
   /// What is asked for without the rest, and its derivative by all unknowns.
   [[nodiscard]] double light_and_slope(const LightQuery& query, double fixed_lx, Eigen::VectorXd& slope) const;

@@ -33,6 +33,8 @@ class RigLight {
   [[nodiscard]] static Result<RigLight> of(const Session& session, const LightPriors& priors,
                                            const ComputeOptions& options);
 
+  /// Per fixture: the level at which it turned out to be read. Before anything is learnt.
+  void read_at(const Eigen::VectorXd& level) { known_.read_at(level); }
   /// Adds readings, and takes the light's changes anew at the mounts found, until these stand still.
   [[nodiscard]] Result<void> learn(std::span<const LightReading> readings);
   [[nodiscard]] const LightUnknowns& known() const { return known_; }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -96,9 +97,11 @@ LightError error_of(const Calibration& calibration, const CalibratedFixture& fix
     variance += std::pow(light.lux.standard_error / light.lux.value, 2);
     ++points;
   }
-  const double output = fixture.output.standard_error / fixture.output.value;
+  const bool measured = fixture.output.standard_error > 0;
+  const double output = measured ? fixture.output.standard_error / fixture.output.value : 0;
   const double local = points > 0 ? std::sqrt(std::max(0.0, variance / points - output * output)) : 0;
-  return {output, std::max({local, fixture.curve_error, kSmallestLocal})};
+  return {measured ? output : std::numeric_limits<double>::quiet_NaN(),
+          std::max({local, fixture.curve_error, kSmallestLocal})};
 }
 
 }  // namespace

@@ -47,7 +47,7 @@ enum class DimmerCurve { linear, square, s_curve };
 /// least two (1, 1). Empty = the maker's curve is right.
 using MeasuredCurve = std::vector<std::pair<double, double>>;
 
-/// Standard deviations, as shares: of a lamp's output, and of its light at a place beside that.
+/// Standard deviations, as shares: of a lamp's output (NaN = as the rig file allows); of its light at a place beside.
 struct LightError {
   double output = 0, local = 0;
 };

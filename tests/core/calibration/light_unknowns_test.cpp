@@ -152,6 +152,20 @@ TEST(LightUnknowns, WithoutReadingsItSaysWhatTheFileSays) {
   EXPECT_NEAR(at.standard_error_lx, std::sqrt(variance), 1e-9);
 }
 
+TEST(LightUnknowns, ALampIsAsUncertainAsItsDimmerAtTheLevelWhereItIsRead) {
+  const Room room(3);
+  LightPriors priors = room.priors;
+  priors.dimmer_exponent = 0.5;
+  priors.read_at = VectorXd::Constant(Room::kSpots, 0.4);
+  LightUnknowns unknowns(Room::sensitivity(VectorXd::Zero(Room::kSpots * kMountUnknowns)), priors);
+  EXPECT_NEAR(unknowns.gain_standard_error(0), std::hypot(priors.log_output, 0.5 * std::log(0.4)), 1e-12);
+  VectorXd level = VectorXd::Constant(Room::kSpots, 0.4);
+  level[0] = 1;
+  unknowns.read_at(level);
+  EXPECT_NEAR(unknowns.gain_standard_error(0), priors.log_output, 1e-12);
+  EXPECT_NEAR(unknowns.gain_standard_error(1), std::hypot(priors.log_output, 0.5 * std::log(0.4)), 1e-12);
+}
+
 TEST(LightUnknowns, ReadingsOfSingleLampsTellOfPointsWithoutAMeterAndHowWell) {
   double before = 0, after = 0;
   int within_two = 0, all = 0;
