@@ -63,6 +63,7 @@ ShowController::State::State(const Rig& rig_in, const LightModel& model, std::sp
       health(rig),
       readings(rig.luxmeters.size()),
       scale(rig),
+      faults(rig),
       head_guard(rig),
       tells_of_lamp(fixtures_that_tell_of_lamps(rig)),
       powerless(rig.fixtures.size(), 0),
@@ -198,6 +199,7 @@ void ShowController::State::take_look(Time now) {
     // Gains would still hold, local errors of the model would not; telling them apart takes readings.
     estimator = GainEstimator(rig, awaited->model);
     scale.forget_all();
+    faults.forget();
     readings.disbelieve_all();
     model_joints = awaited->look.joints;
   }
@@ -385,6 +387,7 @@ void ShowController::apply(Time now, Look look, LightModel model) {
   state.asked_safe = false;
   state.afresh = true;
   state.scale.forget_drift();
+  state.faults.forget();
   state.first_turn(now, look.joints);
   state.take_levels_of_plan(now, wanted, look);
   state.awaited = {std::move(look), std::move(model)};

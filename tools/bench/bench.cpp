@@ -26,6 +26,8 @@ constexpr Suite kSuites[] = {
     {"highlight", "an object's relief: shadow edges; lights by every method; their number; stability", bench_highlight},
     {"buses", "output cycle under a solve; loads: 247 Modbus units, 64 universes, 64 axes", bench_buses},
     {"loop", "a rig whose truth is not its file's: calibrated, then held", bench_loop},
+    {"hold", "a held show: faults that no device reports, quiet hours, lamps that light each other's meters",
+     bench_hold},
     {"faults", "faults of every bus by the hundred: what the light did, when it was said and over", bench_faults},
 };
 

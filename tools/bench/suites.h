@@ -32,6 +32,8 @@ namespace luxrig {
 
 /// Rigs whose truth differs from their files as real ones do. error: of the light at goals after calibrating.
 [[nodiscard]] std::vector<BenchRow> bench_loop(const BenchOptions& options);
+/// Faults that are named by readings alone, false alarms, and corrections beside PI loops.
+[[nodiscard]] std::vector<BenchRow> bench_hold(const BenchOptions& options);
 
 /// Non-negative least squares, cold, warm and limited. error: worst KKT residual. seconds: processor time.
 [[nodiscard]] std::vector<BenchRow> bench_nnls(const BenchOptions& options);

@@ -22,6 +22,7 @@ void ShowController::State::bypass(Time now, std::span<const std::size_t> fixtur
     estimator.forget(m);
     readings.forget(m);
     scale.forget(m);
+    faults.forget();
     health.judged(m, now, "");
   }
   if (lamps.empty() && meters.empty()) return;

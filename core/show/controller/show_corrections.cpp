@@ -45,6 +45,7 @@ void ShowController::State::take_sample(Time now) {
       readings.disbelieve(judgement.luxmeter);  // what it taught before stays: limits rely on it
   }
   scale.look(now, estimator, readings.measured(), program.to_level);
+  look_at_faults(now, sample);
   readings.take(now, sample);
   bool all_believed = true;
   for (std::size_t i = 0; i < rig.luxmeters.size(); ++i)
@@ -61,6 +62,15 @@ void ShowController::State::take_sample(Time now) {
     present.push_back({p, worst_case_lx, known == progress.breaches.end() ? now : known->since});
   }
   progress.breaches = std::move(present);
+}
+
+/// What a device reports itself is known already, and what a stuck meter shows is no light.
+void ShowController::State::look_at_faults(Time now, std::span<const LuxReading> sample) {
+  if (lost.any() || bypassed.any_lamp()) return faults.forget();
+  std::vector<LuxReading> alive;
+  for (const LuxReading& reading : sample)
+    if (!estimator.judge(reading, program.to_level).stuck) alive.push_back(reading);
+  faults.look(now, estimator, alive, program.to_level);
 }
 
 /// Starts solving for the levels that readings and settings by hand require; take_solved() puts them to use.

@@ -27,6 +27,7 @@ void ShowController::State::exchange_rig(Time now, const Rig& other, const Light
   } else {
     estimator = GainEstimator(rig, model);
     scale.forget_all();
+    faults.forget();
     readings.disbelieve_all();
     model_joints = program.joints;
   }

@@ -13,6 +13,7 @@
 #include "core/show/controller/predicted_light.h"
 #include "core/show/controller/shared_control.h"
 #include "core/show/controller/solve_beside.h"
+#include "core/show/fault_watch.h"
 #include "core/show/hand_settings.h"
 #include "core/show/head_guard.h"
 #include "core/show/health_watch.h"
@@ -45,6 +46,7 @@ struct ShowController::State {
   HealthWatch health;
   MeterReadings readings;
   ScaleWatch scale;
+  FaultWatch faults;
   OutputProgram program;
 
   HeadGuard head_guard;
@@ -122,6 +124,7 @@ struct ShowController::State {
   void resume(Time now);
   void fade_to_safe(Time now);
   void take_sample(Time now);
+  void look_at_faults(Time now, std::span<const LuxReading> sample);
   void solve(Time now, SolveBeside::For what);
   void take_solved(Time now);
   void drop_solving();

@@ -176,6 +176,7 @@ ShowStatus ShowController::State::status(Time now) const {
   tell_losses(status);
   tell_bypassed(status);
   scale.tell(status, readings.measured());
+  faults.tell(status);
   head_guard.tell(status, rig, program, sharing.shared());
   sharing.tell(status, now);
   return status;

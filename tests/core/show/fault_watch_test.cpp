@@ -1,0 +1,148 @@
+#include "core/show/fault_watch.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <random>
+#include <string>
+
+namespace luxrig {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Six meters, eight lamps, and a model that is wrong by a tenth of each entry. A sample a second, as the show takes it.
+class Gallery {
+ public:
+  static constexpr int kMeters = 6, kLamps = 8;
+  explicit Gallery(unsigned seed, double noise = 0.01) : random_(seed), noise_(noise) {
+    rig_.points.resize(kMeters);
+    rig_.luxmeters.resize(kMeters);
+    rig_.fixtures.resize(kLamps);
+    for (std::size_t m = 0; m < kMeters; ++m) {
+      rig_.luxmeters[m].name = "meter-" + std::to_string(m);
+      rig_.luxmeters[m].point = m;
+      rig_.points[m].goal_lx = 100;
+    }
+    for (std::size_t f = 0; f < kLamps; ++f) rig_.fixtures[f].name = "lamp-" + std::to_string(f);
+    light_.resize(kMeters, kLamps);
+    for (double& lux : light_.reshaped()) lux = 5 + 5 * uniform();
+    for (Index f = 0; f < kLamps; ++f) {
+      light_(f % kMeters, f) += 200 + 100 * uniform();
+      light_((2 * f + 1) % kMeters, f) += 60 + 60 * uniform();
+      level_.push_back(0.3 + 0.5 * uniform());
+    }
+    LightModel model;
+    model.meter_lux_per_level = light_;
+    for (double& lux : model.meter_lux_per_level.reshaped()) lux *= 1 + 0.1 * normal();
+    model.point_lux_per_level = model.meter_lux_per_level;
+    estimator_.emplace(rig_, model);
+    watch_.emplace(rig_);
+  }
+  /// For so many seconds, with what meters show of the light. Returns after how many the watch has found something.
+  std::optional<int> run(int seconds, const std::function<void(VectorXd&)>& shown = {}) {
+    for (int k = 0; k < seconds; ++k) {
+      now_ += from_seconds(1);
+      VectorXd lux = light_ * Eigen::Map<const VectorXd>(level_.data(), kLamps);
+      if (shown) shown(lux);
+      std::vector<LuxReading> sample;
+      for (std::size_t m = 0; m < kMeters; ++m)
+        sample.push_back({m, lux[static_cast<Index>(m)] * (1 + noise_ * normal()), now_});
+      watch_->look(now_, *estimator_, sample, level_);
+      if (watch_->found()) return k + 1;
+    }
+    return std::nullopt;
+  }
+  [[nodiscard]] std::string found() const { return watch_->found() ? watch_->found()->text : ""; }
+  double uniform() { return std::uniform_real_distribution<double>()(random_); }
+  double normal() { return std::normal_distribution<double>()(random_); }
+
+  Rig rig_;
+  MatrixXd light_;
+  std::vector<double> level_;
+
+ private:
+  std::mt19937_64 random_;
+  double noise_;
+  Time now_{};
+  std::optional<GainEstimator> estimator_;
+  std::optional<FaultWatch> watch_;
+};
+
+TEST(FaultWatch, SaysNothingWhileNothingFails) {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    Gallery gallery(seed, 0.02);
+    EXPECT_FALSE(gallery.run(1800)) << seed << ": " << gallery.found();
+  }
+}
+
+TEST(FaultWatch, NamesALampThatWentDarkWithItsEvidence) {
+  int named = 0;
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    Gallery gallery(seed);
+    ASSERT_FALSE(gallery.run(60)) << seed;
+    gallery.light_.col(3).setZero();
+    const auto after = gallery.run(60);
+    ASSERT_TRUE(after) << seed;
+    EXPECT_NE(gallery.found().find("\"lamp-3\""), std::string::npos) << gallery.found();
+    EXPECT_NE(gallery.found().find("readings: "), std::string::npos);
+    named += gallery.found().find("either") == std::string::npos;
+  }
+  EXPECT_GE(named, 18);
+}
+
+TEST(FaultWatch, NamesACoveredMeterAndForgetsItWhenItIsFree) {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    Gallery gallery(seed);
+    ASSERT_FALSE(gallery.run(60)) << seed;
+    const auto after = gallery.run(60, [](VectorXd& lux) { lux[2] *= 0.3; });
+    ASSERT_TRUE(after) << seed;
+    EXPECT_EQ(gallery.found().find("luxmeter \"meter-2\" shows 3"), 0u) << gallery.found();
+    gallery.run(1);
+    for (int k = 0; k < 40 && !gallery.found().empty(); ++k) gallery.run(1);
+    EXPECT_EQ(gallery.found(), "") << seed;
+  }
+}
+
+TEST(FaultWatch, NamesExchangedMetersAndLampsAndAKnockedLamp) {
+  int named = 0;
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    Gallery meters(seed);
+    meters.level_[1] = 0.9;
+    ASSERT_FALSE(meters.run(60)) << seed;
+    meters.run(60, [](VectorXd& lux) { std::swap(lux[1], lux[4]); });
+    named += meters.found().find("luxmeters \"meter-1\" and \"meter-4\" were exchanged") != std::string::npos;
+
+    Gallery lamps(seed);
+    lamps.level_[0] = 0.9;
+    lamps.level_[5] = 0.3;
+    ASSERT_FALSE(lamps.run(60)) << seed;
+    lamps.light_.col(0) *= 1 / 3.0;
+    lamps.light_.col(5) *= 3;
+    lamps.run(60);
+    named += lamps.found().find("\"lamp-0\" and \"lamp-5\" get each other's level") != std::string::npos;
+
+    Gallery knocked(seed);
+    ASSERT_FALSE(knocked.run(60)) << seed;
+    knocked.light_(4, 4) -= 180;
+    knocked.light_(1, 4) += 120;
+    knocked.run(60);
+    named += knocked.found().find("\"lamp-4\" shines elsewhere") != std::string::npos;
+  }
+  EXPECT_GE(named, 51) << "of 60";
+}
+
+TEST(FaultWatch, LightThatCreepsAsLampsAgeIsNoFault) {
+  Gallery gallery(3);
+  ASSERT_FALSE(gallery.run(60));
+  for (int k = 0; k < 600; ++k) {
+    gallery.light_ *= 1 - 0.05 / 600;  // lamps that warm up
+    ASSERT_FALSE(gallery.run(1)) << gallery.found();
+  }
+}
+
+}  // namespace
+}  // namespace luxrig
