@@ -15,24 +15,24 @@ using Eigen::Index;
 
 /// The dark is measured anew after so many lamps, as daylight and meters drift.
 constexpr std::size_t kLampsPerDark = 4;
+/// A level at which the best luxmeter would show less says nothing of a dimmer.
+constexpr double kSeen_lx = 0.2;
 
 }  // namespace
 
-MeterRun::MeterRun(const Rig& rig, std::span<const double> brightest) : rig_(&rig), curves_(rig.fixtures.size()) {
+MeterRun::MeterRun(const Rig& rig, std::span<const double> brightest, const Eigen::MatrixXd& stated_lux)
+    : rig_(&rig), curves_(rig.fixtures.size()) {
   LUXRIG_CHECK(brightest.size() == rig.fixtures.size(), "levels of {} fixtures", brightest.size());
+  const auto meters = static_cast<Index>(rig.luxmeters.size());
   for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
     if (f % kLampsPerDark == 0) plan_.push_back({0, 0});
     if (!(brightest[f] > 0)) continue;
+    const double most_lx = meters > 0 ? stated_lux.col(static_cast<Index>(f)).tail(meters).maxCoeff() : 0;
     for (const double share : kCurveShares) {
+      if (share < 1 && (rig.fixtures[f].switched || most_lx * brightest[f] * share < kSeen_lx)) break;
       plan_.push_back({f, share * brightest[f]});
-      if (rig.fixtures[f].switched) break;
     }
   }
-}
-
-std::optional<LampStep> MeterRun::next() const {
-  if (taken_.size() >= plan_.size()) return std::nullopt;
-  return plan_[taken_.size()];
 }
 
 void MeterRun::take(double level, std::span<const std::optional<SteadyReading>> readings) {

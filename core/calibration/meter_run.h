@@ -18,15 +18,14 @@ namespace luxrig {
 
 class MeterRun {
  public:
-  /// brightest: brightest_levels(). Lamps at 0 are not measured.
-  MeterRun(const Rig& rig, std::span<const double> brightest);
+  /// brightest: brightest_levels(). Lamps at 0 are not measured. stated_lux: RigLight::stated_lux(); levels at which no
+  /// luxmeter would see light are left out.
+  MeterRun(const Rig& rig, std::span<const double> brightest, const Eigen::MatrixXd& stated_lux);
 
-  /// The light that is to be measured now; none = all is.
-  [[nodiscard]] std::optional<LampStep> next() const;
-  [[nodiscard]] std::size_t steps() const { return plan_.size(); }
-  [[nodiscard]] std::size_t done() const { return taken_.size(); }
-  /// What the meters showed under `next()`. level: of its fixture, as sent. readings: per luxmeter; none = not steady, or
-  /// gone.
+  /// Lights to set one after the other.
+  [[nodiscard]] const std::vector<LampStep>& plan() const { return plan_; }
+  /// What the meters showed under the next of them. level: of its fixture, as sent. readings: per luxmeter; none = not
+  /// steady, or gone.
   void take(double level, std::span<const std::optional<SteadyReading>> readings);
 
   /// Per fixture; not measured of lamps that no meter sees well enough.

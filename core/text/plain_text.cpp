@@ -64,4 +64,27 @@ std::string in_quotes(std::string_view text) {
   return '"' + shown + (text.empty() ? "\"" : "…\"");
 }
 
+std::string escaped_for_markup(std::string_view plain) {
+  std::string out;
+  for (const char c : plain) {
+    switch (c) {
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      default:
+        out += c;
+    }
+  }
+  return out;
+}
+
 }  // namespace luxrig

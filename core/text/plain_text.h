@@ -20,4 +20,7 @@ inline constexpr std::size_t kLongestName = 100;  ///< characters
 /// The same in double quotes, cut after 60 characters.
 [[nodiscard]] std::string in_quotes(std::string_view text);
 
+/// As text of an HTML or XML element, or as an attribute's value in double quotes.
+[[nodiscard]] std::string escaped_for_markup(std::string_view text);
+
 }  // namespace luxrig

@@ -43,30 +43,6 @@ std::vector<Judged> judged_of(const json& list) {
 
 std::string text(const json& value) { return value.dump(1, ' ', false, json::error_handler_t::replace) + "\n"; }
 
-/// For XML and HTML.
-std::string escaped(std::string_view plain) {
-  std::string out;
-  for (const char c : plain) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
-}
-
 struct Picture {
   std::string title, unit;
   std::vector<std::size_t> columns;
@@ -98,7 +74,7 @@ std::string svg_of(const Picture& picture, const Outcome& outcome, double length
   if (!(most > 0)) most = 1;
   const auto x = [&](double at_s) { return kLeft + (kWidth - kLeft - 10) * at_s / std::max(length_s, 1e-9); };
   const auto y = [&](double value) { return kHeight - kBottom - (kHeight - kBottom - kTop) * value / most; };
-  std::string svg = fmt::format("<h2>{}</h2>\n<svg viewBox=\"0 0 {:g} {:g}\" role=\"img\">\n", escaped(picture.title),
+  std::string svg = fmt::format("<h2>{}</h2>\n<svg viewBox=\"0 0 {:g} {:g}\" role=\"img\">\n", escaped_for_markup(picture.title),
                                 kWidth, kHeight);
   for (int k = 0; k <= 4; ++k) {
     const double value = most * k / 4;
@@ -116,7 +92,7 @@ std::string svg_of(const Picture& picture, const Outcome& outcome, double length
         svg += fmt::format(
             "<line class=\"failed\" x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"{1:g}\" y2=\"{2:.1f}\"><title>{3}"
             "</title></line>\n",
-            x(*one.at_s), kTop, kHeight - kBottom, escaped(one.expected + ": " + one.found));
+            x(*one.at_s), kTop, kHeight - kBottom, escaped_for_markup(one.expected + ": " + one.found));
   for (std::size_t k = 0; k < picture.columns.size(); ++k) {
     const std::size_t c = picture.columns[k];
     std::string points;
@@ -125,7 +101,7 @@ std::string svg_of(const Picture& picture, const Outcome& outcome, double length
         points += fmt::format("{:.1f},{:.1f} ", x(trace.at_s[i]), y(trace.rows[i][c]));
     svg += fmt::format("<polyline points=\"{}\" stroke=\"hsl({:.0f} 65% 42%)\"><title>{}</title></polyline>\n", points,
                        360.0 * static_cast<double>(k) / static_cast<double>(picture.columns.size()),
-                       escaped(trace.columns[c]));
+                       escaped_for_markup(trace.columns[c]));
   }
   return svg + "</svg>\n";
 }
@@ -195,27 +171,27 @@ std::string junit_xml(const std::string& rig, const std::vector<Tested>& tested)
       const auto add = [&](const std::string& name, bool held, const std::string& why) {
         ++count;
         cases += fmt::format("    <testcase classname=\"{}\" name=\"{}, seed {}\"",
-                             escaped(one.scenario.file.stem().string()), escaped(name), outcome.seed);
+                             escaped_for_markup(one.scenario.file.stem().string()), escaped_for_markup(name), outcome.seed);
         if (held) {
           cases += "/>\n";
           return;
         }
         ++failed;
-        cases += fmt::format(">\n      <failure message=\"{}\"/>\n    </testcase>\n", escaped(why));
+        cases += fmt::format(">\n      <failure message=\"{}\"/>\n    </testcase>\n", escaped_for_markup(why));
       };
       if (!outcome.error.empty()) add("it runs", false, outcome.error);
       for (const std::vector<Judged>* list : {&outcome.expectations, &outcome.rules})
         for (const Judged& judged : *list) add(judged.expected, judged.held, failed_text(judged));
     }
     suites += fmt::format("  <testsuite name=\"{}\" tests=\"{}\" failures=\"{}\">\n{}  </testsuite>\n",
-                          escaped(one.scenario.name), count, failed, cases);
+                          escaped_for_markup(one.scenario.name), count, failed, cases);
     all_cases += count;
     all_failed += failed;
   }
   return fmt::format(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"{}\" tests=\"{}\" failures=\"{}\">\n{}"
       "</testsuites>\n",
-      escaped(rig), all_cases, all_failed, suites);
+      escaped_for_markup(rig), all_cases, all_failed, suites);
 }
 
 std::string trace_csv(const Trace& trace) {
@@ -246,18 +222,18 @@ std::string trace_html(const Scenario& scenario, const Outcome& outcome) {
       ".grid {{ stroke: #ddd; }} .failed {{ stroke: #c00; stroke-width: 2; stroke-dasharray: 5 3; }}\n"
       "td {{ padding: 0.1rem 0.9rem 0.1rem 0; vertical-align: top; }} .bad {{ color: #b00; }}\n"
       "</style></head><body>\n<h1>{0}, seed {1}</h1>\n",
-      escaped(scenario.name), outcome.seed);
-  if (!outcome.error.empty()) out += fmt::format("<p class=\"bad\">{}</p>\n", escaped(outcome.error));
+      escaped_for_markup(scenario.name), outcome.seed);
+  if (!outcome.error.empty()) out += fmt::format("<p class=\"bad\">{}</p>\n", escaped_for_markup(outcome.error));
   out += "<table>\n";
   for (const std::vector<Judged>* list : {&outcome.expectations, &outcome.rules})
     for (const Judged& one : *list)
       out += fmt::format("<tr{}><td>{}</td><td>{}</td><td>{}</td></tr>\n", one.held ? "" : " class=\"bad\"",
-                         one.held ? "ok" : "failed", escaped(one.expected), one.held ? "" : escaped(failed_text(one)));
+                         one.held ? "ok" : "failed", escaped_for_markup(one.expected), one.held ? "" : escaped_for_markup(failed_text(one)));
   out += "</table>\n";
   for (const Picture& picture : pictures_of(outcome.trace)) out += svg_of(picture, outcome, scenario.length_s);
   out += "<h2>What happened</h2>\n<table>\n";
   for (const Happened& event : outcome.events)
-    out += fmt::format("<tr><td>{:.2f} s</td><td>{}</td></tr>\n", event.at_s, escaped(event.text));
+    out += fmt::format("<tr><td>{:.2f} s</td><td>{}</td></tr>\n", event.at_s, escaped_for_markup(event.text));
   return out + "</table>\n</body></html>\n";
 }
 

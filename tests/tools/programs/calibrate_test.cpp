@@ -56,6 +56,13 @@ TEST(CalibrateOverTheWire, TheNextRunLightsByWhatWasMeasuredAndAStopLeavesNothin
   }
   EXPECT_LT(chi_squared, 3 * squared(3.5));
 
+  const json report = json::parse(text_of(folder / "room" / "calibration-report.json"), nullptr, false);
+  ASSERT_TRUE(report.is_object());
+  EXPECT_EQ(report["made"], calibration["made"]);
+  EXPECT_FALSE(report["goals"].empty());
+  EXPECT_GE(report["readings"].size(), 3u);
+  EXPECT_NE(text_of(folder / "room" / "calibration-report.html").find("</html>"), std::string::npos);
+
   const Ran again = run(calibrate(path, rig.port()));
   EXPECT_NE(again.code, 0) << "the daemon dims by the rig file, and the file beside it is another";
   EXPECT_NE(again.output.find("restart the daemon"), std::string::npos) << again.output;

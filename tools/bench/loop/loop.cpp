@@ -10,6 +10,7 @@
 #include <span>
 
 #include "core/calibration/meter_run.h"
+#include "core/calibration/meter_timing.h"
 #include "core/calibration/rig_light.h"
 #include "core/calibration/seen_places.h"
 #include "core/output/dimming.h"
@@ -28,10 +29,11 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kTransportError = 0.003, kTruthError = 0.005;
-constexpr int kSamples = 10;
-constexpr double kSamplePeriod_s = 0.2, kSmallestError_lx = 0.02;
+constexpr double kSamplePeriod_s = 0.2;
+/// Lamps have arrived after this; what the daemon's own fade would take.
+constexpr double kRamp_s = 0.2, kDark_s = 1;
 /// Longer than the slowest meter's delay and the lamps' ramps.
-constexpr double kSettle_s = 3.5;
+constexpr double kSettle_s = 4;
 /// Where the light is judged: lamps at this level as sent, or as bright as a limit lets each of them alone be.
 constexpr double kLevel = 0.4;
 
@@ -40,25 +42,24 @@ class Bench {
  public:
   Bench(sim::World& world, const Rig& rig) : world_(world), rig_(rig), now_(world.now()) {}
 
-  /// Means of all luxmeters once they are steady; their noise is estimated from the same readings.
-  std::vector<std::optional<SteadyReading>> read(std::span<const double> level) {
-    set(level);
-    std::vector<double> sum(rig_.luxmeters.size(), 0.0), of_squares(rig_.luxmeters.size(), 0.0);
-    for (int k = 0; k < kSamples; ++k) {
-      pass(kSamplePeriod_s);
-      for (std::size_t m = 0; m < sum.size(); ++m) {
-        const double lux = world_.meter_reading_lx(m);
-        sum[m] += lux;
-        of_squares[m] += lux * lux;
-      }
+  /// Readings of all luxmeters under one light after the other; per step.
+  std::vector<std::vector<std::optional<SteadyReading>>> read(std::span<const LampStep> plan,
+                                                              std::span<const double> together) {
+    const std::vector<std::optional<MeterTiming>> timing = learn_timing(together);
+    const double dwell = dwell_s(timing);
+    for (auto& samples : samples_) samples.clear();
+    ReadingLog log(timing);
+    for (const LampStep& step : plan) {
+      send(levels_of(step, rig_));
+      watch(kRamp_s);
+      const double arrived_s = seconds();
+      watch(dwell);
+      log.light(arrived_s, seconds());
     }
-    std::vector<std::optional<SteadyReading>> readings;
-    for (std::size_t m = 0; m < sum.size(); ++m) {
-      const double mean = sum[m] / kSamples;
-      const double variance = std::max(0.0, of_squares[m] / kSamples - mean * mean) / (kSamples - 1);
-      readings.emplace_back(SteadyReading{mean, std::sqrt(variance + kSmallestError_lx * kSmallestError_lx)});
-    }
-    return readings;
+    watch(log.whole_at_s() - seconds());
+    for (std::size_t m = 0; m < samples_.size(); ++m)
+      for (const TimedLux& sample : samples_[m]) log.sample(m, sample);
+    return log.readings();
   }
   /// True light at the points.
   VectorXd truth_lx(std::span<const double> level) {
@@ -75,14 +76,37 @@ class Bench {
     now_ += from_seconds(seconds);
     world_.advance(now_);
   }
-  void set(std::span<const double> level) {
+  void send(std::span<const double> level) {
     for (std::size_t f = 0; f < level.size(); ++f) world_.set_drive(f, drive_for(rig_.fixtures[f], level[f]));
+  }
+  void set(std::span<const double> level) {
+    send(level);
     pass(kSettle_s);
+  }
+  /// Samples all meters meanwhile.
+  void watch(double duration_s) {
+    for (const double end_s = seconds() + duration_s; seconds() < end_s;) {
+      pass(kSamplePeriod_s);
+      for (std::size_t m = 0; m < samples_.size(); ++m) samples_[m].push_back({seconds(), world_.meter_reading_lx(m)});
+    }
+  }
+  std::vector<std::optional<MeterTiming>> learn_timing(std::span<const double> together) {
+    set(std::vector<double>(together.size(), 0.0));
+    watch(kDark_s);
+    const double begun_s = seconds();
+    send(together);
+    watch(kRamp_s);
+    const double arrived_s = seconds();
+    watch(kSettle_s);
+    std::vector<std::optional<MeterTiming>> timing;
+    for (const auto& samples : samples_) timing.push_back(timing_of(samples, begun_s, arrived_s));
+    return timing;
   }
 
   sim::World& world_;
   const Rig& rig_;
   Time now_;
+  std::vector<std::vector<TimedLux>> samples_{rig_.luxmeters.size()};  ///< per luxmeter
 };
 
 /// A person holds a meter at places that are chosen one after the other, or at random.
@@ -145,10 +169,13 @@ Result<SeenRig> see(const Session& session) {
   return seen;
 }
 
+/// A lamp that may not be lit has this level instead of none.
+constexpr double kDimmest = 0.01;
+
 /// Lamps are read at their level of use by hand and by camera.
 LightPriors priors_of(const Rig& rig, const std::vector<double>& used) {
   LightPriors priors = usual_priors(rig);
-  priors.read_at = Eigen::Map<const VectorXd>(used.data(), static_cast<Index>(used.size())).cwiseMax(0.01);
+  priors.read_at = Eigen::Map<const VectorXd>(used.data(), static_cast<Index>(used.size())).cwiseMax(kDimmest);
   return priors;
 }
 
@@ -163,10 +190,10 @@ LightPriors priors_with_camera(const Session& session, const std::vector<double>
 /// What is measured once of a simulated rig, for all cases.
 struct MeasuredRig {
   MeterRun run;
-  std::vector<double> used;  ///< levels of use, as sent
-  VectorXd truth_lx;         ///< of all lamps at those
-  MatrixXd alone_lx;         ///< points × fixtures: of each alone at its level of use
-  double rig_seconds = 0;    ///< that the run took
+  std::vector<double> used;                  ///< levels of use, as sent
+  VectorXd truth_lx;                         ///< of all lamps at those
+  MatrixXd alone_lx;                         ///< points × fixtures: of each alone at its level of use
+  double rig_seconds = 0;                    ///< that the run took
   std::vector<std::vector<SeenLight>> seen;  ///< per fixture at its level of use: of each place
 };
 
@@ -176,12 +203,13 @@ std::vector<double> levels_of_use(std::vector<double> brightest) {
 }
 
 Result<MeasuredRig> measure_rig(sim::World& world, const Session& session, const sim::Deviations& deviations,
-                                const std::vector<double>& brightest, const SeenRig& seen) {
+                                const std::vector<double>& brightest, const MatrixXd& stated_lux, const SeenRig& seen) {
   const Rig& rig = session.rig;
   const RayScene true_rays(sim::true_scene(session.scene, rig, deviations));
   Bench bench(world, rig);
-  MeasuredRig measured{MeterRun(rig, brightest), levels_of_use(brightest), {}, {}, 0, {}};
-  while (const auto step = measured.run.next()) measured.run.take(step->level, bench.read(levels_of(*step, rig)));
+  MeasuredRig measured{MeterRun(rig, brightest, stated_lux), levels_of_use(brightest), {}, {}, 0, {}};
+  const auto read = bench.read(measured.run.plan(), levels_of_use(brightest));
+  for (std::size_t k = 0; k < read.size(); ++k) measured.run.take(measured.run.plan()[k].level, read[k]);
   measured.rig_seconds = bench.seconds();
   std::vector<double> alone(rig.fixtures.size(), 0.0);
   const VectorXd dark_lx = bench.truth_lx(alone);
@@ -223,6 +251,15 @@ VectorXd shares_of(const Rig& rig, const MeasuredRig& measured, bool meters) {
     share[static_cast<Index>(f)] =
         share_at_level(meters ? measured.run.curves()[f].of_level : MeasuredCurve{}, measured.used[f]);
   return share;
+}
+
+/// Per fixture: where the meters read its curve from, else its level of use.
+VectorXd levels_read(const MeasuredRig& measured, const std::vector<double>& brightest) {
+  VectorXd level(static_cast<Index>(brightest.size()));
+  for (std::size_t f = 0; f < brightest.size(); ++f)
+    level[static_cast<Index>(f)] =
+        std::max(kDimmest, measured.run.curves()[f].of_level.empty() ? measured.used[f] : brightest[f]);
+  return level;
 }
 
 /// What the camera saw, for a RigLight of the rig with its places.
@@ -357,7 +394,7 @@ std::vector<BenchRow> bench_loop(const BenchOptions& options) {
     real.seed = static_cast<std::uint64_t>(options.first_seed + s);
     auto world = sim::World::make(session->rig, real, kTruthError);
     if (!world) return failed(world.error().detail);
-    const auto taken = measure_rig(**world, *session, real, brightest, *seen);
+    const auto taken = measure_rig(**world, *session, real, brightest, stated->stated_lux(), *seen);
     if (!taken) return failed(taken.error().detail);
     const MeasuredRig& measured = *taken;
     rig_seconds = measured.rig_seconds;
@@ -366,7 +403,10 @@ std::vector<BenchRow> bench_loop(const BenchOptions& options) {
       RigLight light = kCases[c].camera ? *stated_seen : *stated;
       const VectorXd share = shares_of(session->rig, measured, kCases[c].meters);
       std::vector<LightReading> readings;
-      if (kCases[c].meters) readings = measured.run.readings();
+      if (kCases[c].meters) {
+        readings = measured.run.readings();
+        light.read_at(levels_read(measured, brightest));
+      }
       if (kCases[c].camera) {
         for (LightReading& reading : readings) reading.receiver += seen->places.size();
         const auto of_camera = readings_of_camera(session->rig, measured, *seen, share);

@@ -4,10 +4,14 @@
 
 #include <CLI/CLI.hpp>
 #include <chrono>
+#include <functional>
 #include <memory>
+#include <utility>
 
+#include "core/calibration/calibration_report.h"
 #include "core/calibration/hand_place.h"
 #include "core/calibration/meter_run.h"
+#include "core/calibration/open_run.h"
 #include "core/calibration/rig_light.h"
 #include "core/output/dimming.h"
 #include "tools/command_line/installed.h"
@@ -28,13 +32,18 @@ struct CalibrateArguments {
   std::filesystem::path rig;
   ClientArguments client;
   ComputeOptions compute;
-  bool meters = false, hand = false;                ///< neither = meters
+  bool meters = false, hand = false;  ///< neither = meters
+  std::string hours = "closed";
   std::optional<std::filesystem::path> meter_file;  ///< of the meter in the hand
   std::optional<std::filesystem::path> file;        ///< none = calibration.json beside the rig file
 };
 
 /// Share of full light at which the goals' error is told.
 constexpr double kLevelOfUse = 0.4;
+/// In opening hours: how long it may take, and about how long a step takes.
+constexpr double kOpenHours_s = 1700, kOpenStep_s = 3.6;
+/// A lamp that is off has this level instead of none.
+constexpr double kDimmestLevel = 0.01;
 
 std::string utc_now() {
   const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
@@ -72,22 +81,51 @@ struct Measuring {
   bool any = false;  ///< something is measured
 };
 
+/// All lamps at once, so that no limit is exceeded.
+std::vector<double> together(const Measuring& measuring) {
+  const std::vector<double>& alone = measuring.levels.brightest;
+  std::vector<double> level;
+  for (const double brightest : alone) level.push_back(brightest / std::max<double>(1, std::sqrt(alone.size())));
+  return level;
+}
+
 Fault during(const LampStep& step, const Rig& rig, const Fault& fault) {
   return {fault.cause, "", words_of(step, rig) + ": " + fault.detail, {}};
 }
 
+std::function<void(std::size_t)> progress_of(std::size_t steps) {
+  return [steps, progress = progress_line("measuring")](std::size_t done) {
+    if (progress) progress(static_cast<double>(done) / static_cast<double>(steps));
+  };
+}
+
+/// While visitors are there: the look stays, and each lamp changes by a hair.
+Result<void> by_meters_in_open_hours(Measuring& measuring) {
+  const auto look = measuring.daemon.levels_now();
+  if (!look) return tl::unexpected(look.error());
+  const OpenRun one_round(measuring.session.rig, *look, 1);
+  if (one_round.plan().empty())
+    return tl::unexpected(
+        Fault{Cause::invalid, "", "no dimmable lamp is lit; apply a plan first, or measure with --hours closed", {}});
+  const double round_s = kOpenStep_s * static_cast<double>(one_round.period());
+  OpenRun run(measuring.session.rig, *look, std::max(1, static_cast<int>(kOpenHours_s / round_s)));
+  const auto read = measuring.daemon.measure(run.plan(), {}, progress_of(run.plan().size()), measuring.stop);
+  if (!read) return tl::unexpected(read.error());
+  for (const DaemonRig::Read& step : *read) run.take(step.sent, step.readings);
+  measuring.any = true;
+  measuring.light.read_at(
+      Eigen::Map<const Eigen::VectorXd>(look->data(), static_cast<Eigen::Index>(look->size())).cwiseMax(kDimmestLevel));
+  return measuring.light.learn(run.readings(measuring.curves));
+}
+
 Result<void> by_hanging_meters(Measuring& measuring) {
   const Rig& rig = measuring.session.rig;
-  MeterRun run(rig, measuring.levels.brightest);
-  const Progress progress = progress_line("measuring");
-  while (const auto step = run.next()) {
-    if (progress) progress(static_cast<double>(run.done()) / static_cast<double>(run.steps()));
-    const auto sent = measuring.daemon.light(levels_of(*step, rig), measuring.stop);
-    if (!sent) return tl::unexpected(during(*step, rig, sent.error()));
-    const auto readings = measuring.daemon.read(measuring.stop);
-    if (!readings) return tl::unexpected(during(*step, rig, readings.error()));
-    run.take((*sent)[step->fixture], *readings);
-  }
+  MeterRun run(rig, measuring.levels.brightest, measuring.light.stated_lux());
+  std::vector<std::vector<double>> lights;
+  for (const LampStep& step : run.plan()) lights.push_back(levels_of(step, rig));
+  const auto read = measuring.daemon.measure(lights, together(measuring), progress_of(lights.size()), measuring.stop);
+  if (!read) return tl::unexpected(read.error());
+  for (std::size_t k = 0; k < read->size(); ++k) run.take((*read)[k].sent[run.plan()[k].fixture], (*read)[k].readings);
   measuring.curves = run.curves();
   measuring.any = true;
   return measuring.light.learn(run.readings());
@@ -140,15 +178,21 @@ Result<void> by_hand(Measuring& measuring, HandMeter meter) {
   return {};
 }
 
-void print_report(const Measuring& measuring, const GoalError& before) {
+/// calibration.json -> calibration-report.html
+std::filesystem::path beside(const std::filesystem::path& file, const char* ending) {
+  return file.parent_path() / (file.stem().string() + ending);
+}
+
+void print_report(const Measuring& measuring, const GoalError& before, const CalibrationReport& told) {
   const Rig& rig = measuring.session.rig;
   const LightUnknowns& known = measuring.light.known();
   Table lamps({"fixture", ">output", ">± se", ">moved cm", ">± se", ">turned °", ">± se", "dimmer"});
   for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
     const Eigen::VectorXd off = known.mount(f), error = known.mount_standard_error(f);
     const MeasuredCurve& curve = measuring.curves[f].of_level;
-    lamps.row({rig.fixtures[f].name, fmt::format("{:.3f}", known.gain(f)),
-               known.gain_is_measured(f) ? fmt::format("{:.3f}", known.gain_standard_error(f)) : "not measured",
+    const bool measured = known.gain_is_measured(f);
+    lamps.row({rig.fixtures[f].name, measured ? fmt::format("{:.3f}", known.gain(f)) : "",
+               measured ? fmt::format("{:.3f}", known.gain_standard_error(f)) : "not measured",
                fmt::format("{:.1f}", 100 * off.head<3>().norm()), fmt::format("{:.1f}", 100 * error.head<3>().norm()),
                fmt::format("{:.1f}", deg_from_rad(off.tail<3>().norm())),
                fmt::format("{:.1f}", deg_from_rad(error.tail<3>().norm())),
@@ -157,10 +201,9 @@ void print_report(const Measuring& measuring, const GoalError& before) {
   }
   fmt::print("{}\nThe light at {} goals was known to {}. Now it is known to {}.\n", lamps.text(), before.goals,
              known_words(before), known_words(measuring.light.error_of_goals(measuring.levels.use)));
-  const auto next = measuring.light.places_to_measure(measuring.levels.use, 3, {});
-  if (next.empty()) return;
+  if (told.to_settle.empty()) return;
   std::string names;
-  for (const std::size_t p : next) names += (names.empty() ? "\"" : ", \"") + rig.points[p].name + "\"";
+  for (const std::string& point : told.to_settle) names += (names.empty() ? "\"" : ", \"") + point + "\"";
   fmt::print("A luxmeter at {} would settle most of the rest: luxrig calibrate{} --hand.\n", names,
              rig.luxmeters.empty() ? "" : " --meters");
 }
@@ -174,6 +217,11 @@ int run_calibrate(const CalibrateArguments& arguments) {
   if (meters && rig.luxmeters.empty()) {
     fmt::print(stderr,
                "luxrig: the rig has no [[luxmeter]] to measure with; --hand asks for readings of one in your hand\n");
+    return kExitBadInput;
+  }
+  const bool open = arguments.hours == "open";
+  if (open && arguments.hand) {
+    fmt::print(stderr, "luxrig: by hand, lamps go on alone: that takes --hours closed\n");
     return kExitBadInput;
   }
   auto daemon = DaemonRig::of(arguments.client, rig);
@@ -193,9 +241,10 @@ int run_calibrate(const CalibrateArguments& arguments) {
                       std::vector<LampCurve>(rig.fixtures.size()),
                       stop,
                       false};
-  const GoalError before = light->error_of_goals(measuring.levels.use);
+  const RigLight before = *light;
   if (meters)
-    if (auto measured = by_hanging_meters(measuring); !measured) return report(measured.error());
+    if (auto measured = open ? by_meters_in_open_hours(measuring) : by_hanging_meters(measuring); !measured)
+      return report(measured.error());
   if (arguments.hand)
     if (auto measured = by_hand(measuring, HandMeter(arguments.meter_file)); !measured) return report(measured.error());
 
@@ -205,10 +254,16 @@ int run_calibrate(const CalibrateArguments& arguments) {
   }
   const auto file = arguments.file.value_or(calibration_file(rig));
   if (auto kept = keep_old(file); !kept) return report(kept.error());
-  const std::string text = to_json(calibration_of(*session, *light, measuring.curves, utc_now()));
-  if (auto written = write_file(file, text); !written) return report(written.error());
-  print_report(measuring, before);
-  fmt::print("Written: {}\n{}\n", file.string(),
+  Calibration found = calibration_of(*session, *light, measuring.curves, utc_now());
+  if (auto written = write_file(file, to_json(found)); !written) return report(written.error());
+  CalibrationReport told = report_of(*session, before, *light, std::move(found), kLevelOfUse);
+  if (meters) told.by.emplace_back("luxmeters that hang");
+  if (arguments.hand) told.by.emplace_back("a luxmeter in the hand");
+  const auto page = beside(file, "-report.html");
+  for (const auto& [name, text] : {std::pair{page, to_html(told)}, {beside(file, "-report.json"), to_json(told)}})
+    if (auto written = write_file(name, text); !written) return report(written.error());
+  print_report(measuring, before.error_of_goals(measuring.levels.use), told);
+  fmt::print("Written: {}\nHow good it is, as a page: {}\n{}\n", file.string(), page.string(),
              arguments.file ? "It is in use once it lies beside the rig file, as calibration.json."
                             : "Start luxrig run anew to light the rig by it.");
   return kExitOk;
@@ -224,6 +279,11 @@ Action declare_calibrate(CLI::App& command) {
                    "by a luxmeter in your hand: it says where to hold it, you type readings");
   command.add_option("--meter-file", calibrate->meter_file,
                      "with --hand: file that the meter's program writes; Enter alone takes its last reading");
+  command
+      .add_option("--hours", calibrate->hours,
+                  "open: the look stays and no lamp changes by more than 2 %, for half an hour; closed: one lamp after "
+                  "the other, alone (default)")
+      ->check(CLI::IsMember({"open", "closed"}));
   command.add_option("--file", calibrate->file, "where to write it (else calibration.json beside the rig file)");
   return [calibrate] { return run_calibrate(*calibrate); };
 }

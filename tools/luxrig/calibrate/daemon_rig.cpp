@@ -29,13 +29,17 @@ using Clock = std::chrono::steady_clock;
 constexpr double kHeld_s = 45;
 constexpr auto kPoll = 100ms;
 constexpr auto kLongestWait = 30s;
-/// The slowest meters of the field answer this late.
-constexpr auto kSettles = 2200ms;
-constexpr std::size_t kSamples = 6;
-constexpr auto kLongestSampling = 8s;
-constexpr double kSameLevel = 1e-3, kSmallestError_lx = 0.02;
-/// Samples that still wander by more than this, as a share and in standard errors, are not steady.
-constexpr double kWanders = 0.02, kWandersErrors = 4;
+/// The light stands still if the levels are the same in two looks.
+constexpr double kSameLevel = 1e-3;
+/// How long all is dark before the luxmeters' delay is measured, and lit after it. The slowest of the field answer 2 s late.
+constexpr double kDark_s = 3, kLit_s = 4;
+constexpr double kSteadyDark_s = 1;
+/// Two readings of a meter are farther apart than the status of one is late.
+constexpr double kSameReading_s = 0.03;
+/// How late a meter is taken to be where that cannot be tried, and how seldom it is read.
+constexpr double kSlowestMeter_s = 2.2, kSlowestPeriod_s = 0.25;
+/// No light stays for less, so that a sample of each meter is never a matter of luck.
+constexpr double kShortestDwell_s = 0.4;
 
 std::string calibration_words(const std::string& made) {
   return made.empty() ? "no calibration" : fmt::format("the calibration of {}", made);
@@ -43,35 +47,14 @@ std::string calibration_words(const std::string& made) {
 
 Fault fault(Cause cause, std::string detail) { return {cause, "", std::move(detail), {}}; }
 
-std::optional<SteadyReading> steady(const std::vector<double>& samples) {
-  if (samples.size() < kSamples) return std::nullopt;
-  const auto count = static_cast<double>(samples.size());
-  double mean = 0, variance = 0, slope = 0, times = 0;
-  for (const double lux : samples) mean += lux / count;
-  for (std::size_t k = 0; k < samples.size(); ++k) {
-    const double time = static_cast<double>(k) - (count - 1) / 2;
-    variance += (samples[k] - mean) * (samples[k] - mean) / (count - 1);
-    slope += time * samples[k];
-    times += time * time;
-  }
-  const double error_lx = std::sqrt(variance / count + kSmallestError_lx * kSmallestError_lx);
-  const double drift_lx = std::abs(slope / times) * (count - 1);
-  if (drift_lx > kWanders * mean && drift_lx > kWandersErrors * error_lx) return std::nullopt;
-  return SteadyReading{mean, error_lx};
-}
+double now_s() { return std::chrono::duration<double>(Clock::now().time_since_epoch()).count(); }
+
+Fault stopped() { return fault(Cause::cancelled, "stopped"); }
 
 }  // namespace
 
-DaemonRig::DaemonRig(HttpPeer daemon, const Rig& rig, int lock, json held_before)
-    : daemon_(std::move(daemon)), rig_(&rig), lock_(lock), held_before_(std::move(held_before)) {}
-
-DaemonRig::DaemonRig(DaemonRig&& other) noexcept
-    : daemon_(std::move(other.daemon_)),
-      rig_(other.rig_),
-      lock_(std::exchange(other.lock_, -1)),
-      dimmed_as_(std::move(other.dimmed_as_)),
-      held_before_(std::move(other.held_before_)),
-      held_(std::move(other.held_)) {}
+DaemonRig::DaemonRig(HttpPeer daemon, const Rig& rig, std::shared_ptr<int> lock)
+    : daemon_(std::move(daemon)), rig_(&rig), lock_(std::move(lock)), samples_(rig.luxmeters.size()) {}
 
 Result<DaemonRig> DaemonRig::of(const ClientArguments& client, const Rig& rig) {
   auto daemon = daemon_on(client.port, client.token);
@@ -79,14 +62,16 @@ Result<DaemonRig> DaemonRig::of(const ClientArguments& client, const Rig& rig) {
   const auto folder = runtime_folder();
   if (!folder) return tl::unexpected(fault(Cause::system, "no folder for this user's lock files can be made"));
   const auto lock_file = *folder / fmt::format("{}.calibrate", client.port);
-  const int lock = ::open(lock_file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
-  if (lock < 0) return tl::unexpected(fault(Cause::system, lock_file.string() + " cannot be opened"));
-  if (::flock(lock, LOCK_EX | LOCK_NB) != 0) {
-    ::close(lock);
+  const int file = ::open(lock_file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
+  if (file < 0) return tl::unexpected(fault(Cause::system, lock_file.string() + " cannot be opened"));
+  std::shared_ptr<int> lock(new int(file), [](const int* locked) {
+    ::close(*locked);
+    delete locked;
+  });
+  if (::flock(file, LOCK_EX | LOCK_NB) != 0)
     return tl::unexpected(
         fault(Cause::invalid, "another luxrig calibrate measures this rig; wait for its end, or stop it"));
-  }
-  DaemonRig connected(std::move(*daemon), rig, lock, json::array());
+  DaemonRig connected(std::move(*daemon), rig, std::move(lock));
   const auto status = connected.status();
   if (!status) return tl::unexpected(no_daemon(client.port));
   if (text_of(*status, "rig") != rig.name)
@@ -108,7 +93,7 @@ Result<DaemonRig> DaemonRig::of(const ClientArguments& client, const Rig& rig) {
 }
 
 DaemonRig::~DaemonRig() {
-  if (lock_ < 0) return;
+  if (!lock_) return;
   std::vector<std::string> names;
   for (const Fixture& fixture : rig_->fixtures) names.push_back(fixture.name);
   if (const auto released = post("/api/release", {{"names", names}}); !released)
@@ -120,7 +105,6 @@ DaemonRig::~DaemonRig() {
     if (const auto left_s = number_of(held, "remaining_s")) again["for_s"] = std::max(1.0, *left_s);
     (void)post("/api/level", again);
   }
-  ::close(lock_);
 }
 
 Result<json> DaemonRig::status() const {
@@ -140,11 +124,40 @@ Result<void> DaemonRig::post(const char* route, const json& body) const {
 }
 
 Result<void> DaemonRig::hold(std::span<const double> level) const {
-  if (auto dark = post("/api/level", {{"fixtures", {"*"}}, {"level", 0}, {"for_s", kHeld_s}}); !dark) return dark;
+  // None goes dark on its way from one light to another.
+  std::vector<std::string> dark;
+  for (std::size_t f = 0; f < level.size(); ++f)
+    if (!(level[f] > 0)) dark.push_back(rig_->fixtures[f].name);
+  if (!dark.empty())
+    if (auto put_out = post("/api/level", {{"fixtures", dark}, {"level", 0}, {"for_s", kHeld_s}}); !put_out)
+      return put_out;
   for (std::size_t f = 0; f < level.size(); ++f) {
     if (!(level[f] > 0)) continue;
     const json one = {{"fixtures", {rig_->fixtures[f].name}}, {"level", level[f]}, {"for_s", kHeld_s}};
     if (auto lit = post("/api/level", one); !lit) return lit;
+  }
+  return {};
+}
+
+Result<json> DaemonRig::look() {
+  auto now = status();
+  if (!now) return now;
+  const json list = list_of(*now, "luxmeters");
+  for (std::size_t m = 0; m < std::min(samples_.size(), list.size()); ++m) {
+    const auto lux = number_of(list[m], "lux"), age_s = number_of(list[m], "age_s");
+    if (!lux || !age_s) continue;
+    // The same reading again has the same time, but for the way of the status.
+    const double at_s = now_s() - *age_s;
+    if (samples_[m].empty() || at_s > samples_[m].back().at_s + kSameReading_s) samples_[m].push_back({at_s, *lux});
+  }
+  return now;
+}
+
+Result<void> DaemonRig::watch(double seconds, const std::stop_token& stop) {
+  for (const double end_s = now_s() + seconds; now_s() < end_s;) {
+    if (stop.stop_requested()) return tl::unexpected(stopped());
+    std::this_thread::sleep_for(kPoll);
+    if (const auto now = look(); !now) return tl::unexpected(now.error());
   }
   return {};
 }
@@ -155,12 +168,11 @@ Result<std::vector<double>> DaemonRig::light(std::span<const double> level, cons
     held_.push_back(share_at_level(dimmed_as_[f].measured_curve, level[f]));
   if (auto held = hold(held_); !held) return tl::unexpected(held.error());
   const auto begun = Clock::now();
-  auto still_since = begun;
   std::vector<double> sent, before;
   for (;;) {
-    if (stop.stop_requested()) return tl::unexpected(fault(Cause::cancelled, "stopped"));
+    if (stop.stop_requested()) return tl::unexpected(stopped());
     std::this_thread::sleep_for(kPoll);
-    const auto now = status();
+    const auto now = look();
     if (!now) return tl::unexpected(now.error());
     if (flag_of(*now, "blackout")) return tl::unexpected(fault(Cause::invalid, "somebody has called a blackout"));
     sent.clear();
@@ -174,41 +186,76 @@ Result<std::vector<double>> DaemonRig::light(std::span<const double> level, cons
     }
     if (sent.size() != level.size())
       return tl::unexpected(fault(Cause::invalid, "the daemon's rig has other fixtures than the file"));
-    if (!arrived || sent != before) still_since = Clock::now();
-    before = sent;
-    if (arrived && Clock::now() - still_since >= kSettles) {
+    if (arrived && sent == before) {
       for (std::size_t f = 0; f < sent.size(); ++f) sent[f] = level_of_share(dimmed_as_[f].measured_curve, sent[f]);
       return sent;
     }
+    before = sent;
     if (Clock::now() - begun > kLongestWait)
       return tl::unexpected(fault(Cause::system, "the light does not come to rest; luxrig status says why"));
   }
 }
 
-Result<std::vector<std::optional<SteadyReading>>> DaemonRig::read(const std::stop_token& stop) const {
-  // A reading counts once: its age goes back when the next one comes.
-  const std::size_t meters = rig_->luxmeters.size();
-  std::vector<std::vector<double>> samples(meters);
-  std::vector<double> age_s(meters, 0.0);
-  const auto begun = Clock::now();
-  const auto enough = [&] {
-    return std::all_of(samples.begin(), samples.end(), [](const auto& of) { return of.size() >= kSamples; });
-  };
-  while (!enough() && Clock::now() - begun < kLongestSampling) {
-    if (stop.stop_requested()) return tl::unexpected(fault(Cause::cancelled, "stopped"));
-    std::this_thread::sleep_for(kPoll);
-    const auto now = status();
-    if (!now) return tl::unexpected(now.error());
-    const json list = list_of(*now, "luxmeters");
-    for (std::size_t m = 0; m < std::min(meters, list.size()); ++m) {
-      const auto lux = number_of(list[m], "lux"), age = number_of(list[m], "age_s");
-      if (lux && age && (samples[m].empty() || *age < age_s[m])) samples[m].push_back(*lux);
-      age_s[m] = age.value_or(0);
-    }
+Result<DaemonRig::Timings> DaemonRig::learn_timing(std::span<const double> together, const std::stop_token& stop) {
+  const std::vector<double> dark(together.size(), 0.0);
+  if (auto sent = light(dark, stop); !sent) return tl::unexpected(sent.error());
+  const double dark_s = now_s();
+  if (auto watched = watch(kDark_s, stop); !watched) return tl::unexpected(watched.error());
+  const double begun_s = now_s();
+  if (auto sent = light(together, stop); !sent) return tl::unexpected(sent.error());
+  const double arrived_s = now_s();
+  if (auto watched = watch(kLit_s, stop); !watched) return tl::unexpected(watched.error());
+  Timings timing;
+  for (const auto& samples : samples_) {
+    // What was read before the last second of darkness may be the light before.
+    const auto first = std::find_if(samples.begin(), samples.end(),
+                                    [&](const TimedLux& s) { return s.at_s > dark_s + kDark_s - kSteadyDark_s; });
+    timing.push_back(timing_of({first, samples.end()}, begun_s, arrived_s));
   }
-  std::vector<std::optional<SteadyReading>> readings;
-  for (const auto& of_meter : samples) readings.push_back(steady(of_meter));
-  return readings;
+  return timing;
+}
+
+Result<std::vector<DaemonRig::Read>> DaemonRig::measure(std::span<const std::vector<double>> plan,
+                                                        std::span<const double> together,
+                                                        const std::function<void(std::size_t)>& tell,
+                                                        const std::stop_token& stop) {
+  Timings timing(samples_.size(), MeterTiming{0, kSlowestMeter_s, kSlowestPeriod_s});
+  if (!together.empty()) {
+    auto learnt = learn_timing(together, stop);
+    if (!learnt) return tl::unexpected(learnt.error());
+    timing = std::move(*learnt);
+  }
+  const double dwell = std::max(kShortestDwell_s, dwell_s(timing));
+  for (auto& samples : samples_) samples.clear();
+  ReadingLog log(std::move(timing));
+  std::vector<Read> read;
+  for (const std::vector<double>& level : plan) {
+    if (tell) tell(read.size());
+    auto sent = light(level, stop);
+    if (!sent) return tl::unexpected(sent.error());
+    const double arrived_s = now_s();
+    if (const auto watched = watch(dwell, stop); !watched) return tl::unexpected(watched.error());
+    log.light(arrived_s, now_s());
+    read.push_back({std::move(*sent), {}});
+  }
+  if (const auto watched = watch(log.whole_at_s() - now_s(), stop); !watched) return tl::unexpected(watched.error());
+  for (std::size_t m = 0; m < samples_.size(); ++m)
+    for (const TimedLux& sample : samples_[m]) log.sample(m, sample);
+  auto readings = log.readings();
+  for (std::size_t k = 0; k < read.size(); ++k) read[k].readings = std::move(readings[k]);
+  return read;
+}
+
+Result<std::vector<double>> DaemonRig::levels_now() {
+  const auto now = look();
+  if (!now) return tl::unexpected(now.error());
+  std::vector<double> level;
+  for (const json& fixture : list_of(*now, "fixtures")) {
+    if (level.size() == dimmed_as_.size()) break;
+    level.push_back(level_of_share(dimmed_as_[level.size()].measured_curve, number_of(fixture, "level").value_or(0)));
+  }
+  if (level.size() == dimmed_as_.size()) return level;
+  return tl::unexpected(fault(Cause::invalid, "the daemon's rig has other fixtures than the file"));
 }
 
 }  // namespace luxrig

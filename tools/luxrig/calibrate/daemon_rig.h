@@ -2,7 +2,8 @@
 /// A running daemon's rig, for measuring: levels held by hand, and readings once the light stands still.
 
 #include <chrono>
-#include <filesystem>
+#include <functional>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "core/calibration/lamp_steps.h"
+#include "core/calibration/meter_timing.h"
 #include "core/rig/rig.h"
 #include "tools/http/client.h"
 #include "tools/process/client.h"
@@ -26,7 +28,7 @@ class DaemonRig {
   [[nodiscard]] static Result<DaemonRig> of(const ClientArguments& client, const Rig& rig);
   /// Gives the light back as it was: what this held is released, what a person held is held again.
   ~DaemonRig();
-  DaemonRig(DaemonRig&& other) noexcept;
+  DaemonRig(DaemonRig&&) = default;
   DaemonRig& operator=(DaemonRig&&) = delete;
 
   /// Holds these levels, and waits until they are sent and the light stands still. Per fixture, as sent: a limit may leave
@@ -35,21 +37,41 @@ class DaemonRig {
   /// Holds the same levels for longer. Call it every kHoldAgain while a person is waited for.
   [[nodiscard]] Result<void> hold_again() const { return hold(held_); }
   static constexpr std::chrono::seconds kHoldAgain{15};
-  /// Per luxmeter: none = not steady, or gone.
-  [[nodiscard]] Result<std::vector<std::optional<SteadyReading>>> read(const std::stop_token& stop) const;
+
+  struct Read {
+    std::vector<double> sent;                            ///< per fixture
+    std::vector<std::optional<SteadyReading>> readings;  ///< per luxmeter; none = not steady, or gone
+  };
+  /// Sets one light after the other (levels of all fixtures) and reads all luxmeters. Before, all lamps go on to
+  /// `together`, which shows how late each meter is; if that is empty, each is taken to be as late as any.
+  /// tell: steps so far.
+  [[nodiscard]] Result<std::vector<Read>> measure(std::span<const std::vector<double>> plan,
+                                                  std::span<const double> together,
+                                                  const std::function<void(std::size_t done)>& tell,
+                                                  const std::stop_token& stop);
+  /// As sent now, per fixture.
+  [[nodiscard]] Result<std::vector<double>> levels_now();
 
  private:
-  DaemonRig(HttpPeer daemon, const Rig& rig, int lock, nlohmann::json held_before);
+  using Timings = std::vector<std::optional<MeterTiming>>;
+
+  DaemonRig(HttpPeer daemon, const Rig& rig, std::shared_ptr<int> lock);
   [[nodiscard]] Result<nlohmann::json> status() const;
+  /// The status now. Readings that are new are kept as samples.
+  [[nodiscard]] Result<nlohmann::json> look();
+  /// Keeps looking for so long.
+  [[nodiscard]] Result<void> watch(double seconds, const std::stop_token& stop);
+  [[nodiscard]] Result<Timings> learn_timing(std::span<const double> together, const std::stop_token& stop);
   [[nodiscard]] Result<void> hold(std::span<const double> level) const;
   [[nodiscard]] Result<void> post(const char* route, const nlohmann::json& body) const;
 
   HttpPeer daemon_;
   const Rig* rig_;
-  int lock_ = -1;               ///< a locked file
-  std::vector<Fixture> dimmed_as_{};  ///< by the calibration in use
-  nlohmann::json held_before_;  ///< "overrides" of the status
+  std::shared_ptr<int> lock_;                             ///< of a locked file; null = moved from
+  std::vector<Fixture> dimmed_as_{};                      ///< by the calibration in use
+  nlohmann::json held_before_ = nlohmann::json::array();  ///< "overrides" of the status
   std::vector<double> held_{};
+  std::vector<std::vector<TimedLux>> samples_{};  ///< per luxmeter
 };
 
 }  // namespace luxrig

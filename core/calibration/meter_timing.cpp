@@ -1,0 +1,168 @@
+#include "core/calibration/meter_timing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/check.h"
+
+namespace luxrig {
+namespace {
+
+constexpr double kSmallestError_lx = 0.02;
+/// Samples that wander by more than this, as a share and in standard errors, are not steady.
+constexpr double kWanders = 0.02, kWandersErrors = 4;
+/// A change is clear if it is so many times the scatter; the light has arrived within this share of it.
+constexpr double kClear = 10, kBegun = 0.03, kArrivedWithin = 0.01;
+/// A meter has settled when this share of the change is left.
+constexpr double kUnsettled = 0.005;
+constexpr std::size_t kFewest = 4;  ///< samples at the end, and in the dark
+
+struct Scatter {
+  double mean = 0, deviation = 0;
+};
+
+Scatter scatter_of(std::span<const TimedLux> samples) {
+  Scatter scatter;
+  const auto count = static_cast<double>(samples.size());
+  for (const TimedLux& sample : samples) scatter.mean += sample.lux / count;
+  for (const TimedLux& sample : samples)
+    scatter.deviation += (sample.lux - scatter.mean) * (sample.lux - scatter.mean) / (count - 1);
+  scatter.deviation = std::hypot(std::sqrt(scatter.deviation), kSmallestError_lx);
+  return scatter;
+}
+
+/// Mean, variance of a sample, and by how much they go up or down from the first to the last.
+struct Samples {
+  double mean = 0, variance = 0, drift = 0;
+};
+
+Samples of(std::span<const double> lux) {
+  Samples samples;
+  const auto count = static_cast<double>(lux.size());
+  double slope = 0, times = 0;
+  for (const double sample : lux) samples.mean += sample / count;
+  for (std::size_t k = 0; k < lux.size(); ++k) {
+    const double time = static_cast<double>(k) - (count - 1) / 2;
+    samples.variance += (lux[k] - samples.mean) * (lux[k] - samples.mean) / (count - 1);
+    slope += time * lux[k];
+    times += time * time;
+  }
+  samples.drift = slope / times * (count - 1);
+  return samples;
+}
+
+/// Below, a meter's last digit is more than its noise.
+constexpr double kBrightForNoise_lx = 2;
+/// The noise of all readings together counts like so many samples of each.
+constexpr double kFreedomOfNoise = 10;
+
+/// Square of a meter's noise as a share of its light: the median over its lights, so that those that wander do not count.
+double noise_of(std::span<const std::vector<double>> lights) {
+  std::vector<double> shares;
+  for (const auto& lux : lights) {
+    if (lux.size() < kSteadySamples) continue;
+    const Samples samples = of(lux);
+    if (!(samples.mean > kBrightForNoise_lx)) continue;
+    // Median of χ² over its mean (Wilson and Hilferty 1931).
+    const double freedom = static_cast<double>(lux.size() - 1);
+    shares.push_back(samples.variance / (samples.mean * samples.mean) / std::pow(1 - 2 / (9 * freedom), 3));
+  }
+  if (shares.empty()) return 0;
+  const auto middle = shares.begin() + static_cast<std::ptrdiff_t>(shares.size() / 2);
+  std::nth_element(shares.begin(), middle, shares.end());
+  return *middle;
+}
+
+}  // namespace
+
+std::optional<MeterTiming> timing_of(std::span<const TimedLux> samples, double begun_s, double arrived_s) {
+  const auto first_after =
+      std::find_if(samples.begin(), samples.end(), [&](const TimedLux& sample) { return sample.at_s > begun_s; });
+  const auto dark_count = static_cast<std::size_t>(first_after - samples.begin());
+  if (dark_count < kFewest || samples.size() < dark_count + 2 * kFewest) return std::nullopt;
+  const Scatter dark = scatter_of(samples.first(dark_count));
+  const Scatter lit = scatter_of(samples.last(std::max(kFewest, (samples.size() - dark_count) / 3)));
+  const double change = std::abs(lit.mean - dark.mean);
+  if (!(change > kClear * std::hypot(dark.deviation, lit.deviation))) return std::nullopt;
+
+  const double begins_at = std::max(kBegun * change, 4 * dark.deviation);
+  const double within = std::max(kArrivedWithin * change, 4 * lit.deviation);
+  std::size_t begins = dark_count;
+  while (begins < samples.size() && std::abs(samples[begins].lux - dark.mean) < begins_at) ++begins;
+  const auto outside = [&](std::size_t k) { return std::abs(samples[k].lux - lit.mean) > within; };
+  // One stray sample is noise, two in a row are not.
+  std::size_t arrives = begins < samples.size() && outside(begins) ? begins + 1 : begins;
+  for (std::size_t k = begins; k + 1 < samples.size(); ++k)
+    if (outside(k) && outside(k + 1)) arrives = k + 2;
+  if (arrives + kFewest > samples.size()) return std::nullopt;
+  MeterTiming timing;
+  timing.period_s =
+      (samples.back().at_s - samples[dark_count].at_s) / static_cast<double>(samples.size() - 1 - dark_count);
+  // It began somewhere between two samples.
+  timing.delay_s = std::max(0.0, samples[begins - 1].at_s - begun_s);
+  // What noise hides of a lag of first order goes on in the same way.
+  const double seen_s = samples[arrives].at_s - arrived_s - timing.delay_s;
+  const double longer = std::max(1.0, std::log(kUnsettled) / std::log(std::min(0.5, within / change)));
+  timing.settled_s = std::max(0.0, timing.delay_s + longer * std::max(0.0, seen_s));
+  return timing;
+}
+
+double dwell_s(std::span<const std::optional<MeterTiming>> timing) {
+  double longest = 0;
+  for (const auto& of : timing)
+    if (of)
+      longest = std::max(longest, of->settled_s - of->delay_s + static_cast<double>(kSteadySamples + 1) * of->period_s);
+  return longest;
+}
+
+ReadingLog::ReadingLog(std::vector<std::optional<MeterTiming>> timing)
+    : timing_(std::move(timing)), samples_(timing_.size()) {}
+
+void ReadingLog::light(double arrived_s, double left_s) {
+  LUXRIG_CHECK(left_s >= arrived_s && (lights_.empty() || arrived_s >= lights_.back().left_s),
+               "a light from {} to {} s", arrived_s, left_s);
+  lights_.push_back({arrived_s, left_s});
+}
+
+double ReadingLog::whole_at_s() const {
+  double latest = 0;
+  for (const auto& timing : timing_)
+    if (timing) latest = std::max(latest, timing->delay_s + timing->period_s);
+  return lights_.empty() ? 0 : lights_.back().left_s + latest;
+}
+
+std::vector<double> ReadingLog::samples_of(std::size_t luxmeter, const Span& light) const {
+  std::vector<double> lux;
+  const MeterTiming& timing = *timing_[luxmeter];
+  for (const TimedLux& sample : samples_[luxmeter])
+    if (sample.at_s >= light.arrived_s + timing.settled_s && sample.at_s <= light.left_s + timing.delay_s)
+      lux.push_back(sample.lux);
+  return lux;
+}
+
+std::vector<std::vector<std::optional<SteadyReading>>> ReadingLog::readings() const {
+  std::vector<std::vector<std::optional<SteadyReading>>> readings(lights_.size());
+  for (auto& of_light : readings) of_light.resize(timing_.size());
+  for (std::size_t m = 0; m < timing_.size(); ++m) {
+    if (!timing_[m]) continue;
+    std::vector<std::vector<double>> lux;
+    for (const Span& light : lights_) lux.push_back(samples_of(m, light));
+    const double noise_squared = noise_of(lux);
+    const double freedom = noise_squared > 0 ? kFreedomOfNoise : 0;
+    for (std::size_t k = 0; k < lights_.size(); ++k) {
+      if (lux[k].size() < kSteadySamples) continue;
+      const Samples samples = of(lux[k]);
+      const auto count = static_cast<double>(lux[k].size());
+      const double variance = ((count - 1) * samples.variance + freedom * noise_squared * samples.mean * samples.mean) /
+                              (count - 1 + freedom);
+      const double error_lx = std::hypot(std::sqrt(variance / count), kSmallestError_lx);
+      const double drift_lx = std::abs(samples.drift);
+      if (drift_lx > kWanders * std::abs(samples.mean) && drift_lx > kWandersErrors * error_lx) continue;
+      readings[k][m] = SteadyReading{samples.mean, error_lx};
+    }
+  }
+  return readings;
+}
+
+}  // namespace luxrig
