@@ -308,20 +308,36 @@ namespace {
 struct ViewFrame {
   explicit ViewFrame(const Camera& camera)
       : ahead((camera.target_world_m - camera.eye_world_m).normalized()),
-        right(ahead.cross(std::abs(ahead.z()) > 0.999 ? Vec3::UnitY() : Vec3::UnitZ()).normalized()),
-        up(right.cross(ahead)),
-        per_px(2 * std::tan(camera.vertical_fov_rad / 2) / camera.height_px) {}
+        per_px(2 * std::tan(camera.vertical_fov_rad / 2) / camera.height_px),
+        middle_px(camera.width_px / 2.0, camera.height_px / 2.0),
+        distortion(camera.distortion) {
+    const Vec3 level = ahead.cross(std::abs(ahead.z()) > 0.999 ? Vec3::UnitY() : Vec3::UnitZ()).normalized();
+    const Vec3 above = level.cross(ahead);
+    right = std::cos(camera.roll_rad) * level - std::sin(camera.roll_rad) * above;
+    up = right.cross(ahead);
+  }
+  /// Of a straight lens from the place in the picture, both from the middle and over the distance ahead.
+  [[nodiscard]] Eigen::Vector2d straight(const Eigen::Vector2d& seen) const {
+    return seen / (1 + distortion * seen.squaredNorm());
+  }
+  /// Its inverse. Empty where this lens shows nothing.
+  [[nodiscard]] std::optional<Eigen::Vector2d> seen(const Eigen::Vector2d& straight) const {
+    const double root = 1 - 4 * distortion * straight.squaredNorm();
+    if (root < 0) return std::nullopt;
+    return straight * (2 / (1 + std::sqrt(root)));
+  }
   Vec3 ahead, right, up;
   double per_px;  ///< of the distance ahead
+  Eigen::Vector2d middle_px;
+  double distortion;
 };
 
 }  // namespace
 
 Vec3 ray_direction(const Camera& camera, double x_px, double y_px) {
   const ViewFrame view(camera);
-  return (view.ahead + (x_px - camera.width_px / 2.0) * view.per_px * view.right -
-          (y_px - camera.height_px / 2.0) * view.per_px * view.up)
-      .normalized();
+  const Eigen::Vector2d at = view.straight((Eigen::Vector2d(x_px, y_px) - view.middle_px) * view.per_px);
+  return (view.ahead + at.x() * view.right - at.y() * view.up).normalized();
 }
 
 std::optional<PixelPlace> pixel_of(const Camera& camera, const Vec3& place_world_m) {
@@ -329,10 +345,14 @@ std::optional<PixelPlace> pixel_of(const Camera& camera, const Vec3& place_world
   const Vec3 to_m = place_world_m - camera.eye_world_m;
   const double ahead_m = to_m.dot(view.ahead);
   if (!(ahead_m > 0)) return std::nullopt;
+  const Eigen::Vector2d straight(to_m.dot(view.right) / ahead_m, -to_m.dot(view.up) / ahead_m);
+  const auto seen = view.seen(straight);
+  if (!seen) return std::nullopt;
   PixelPlace place;
-  place.px_per_m = 1 / (ahead_m * view.per_px);
-  place.x_px = camera.width_px / 2.0 + to_m.dot(view.right) * place.px_per_m;
-  place.y_px = camera.height_px / 2.0 - to_m.dot(view.up) * place.px_per_m;
+  const double stretch = straight.norm() > 0 ? seen->norm() / straight.norm() : 1;
+  place.px_per_m = stretch / (ahead_m * view.per_px);
+  place.x_px = view.middle_px.x() + seen->x() / view.per_px;
+  place.y_px = view.middle_px.y() + seen->y() / view.per_px;
   if (!(place.x_px >= 0 && place.x_px < camera.width_px && place.y_px >= 0 && place.y_px < camera.height_px))
     return std::nullopt;
   return place;
@@ -344,6 +364,8 @@ Result<Picture> render_picture(const RayScene& scene, std::span<const Emitter> e
     return refusal(fmt::format("picture of {} × {} pixels; 1 to 16384 each way", camera.width_px, camera.height_px));
   if (!(camera.vertical_fov_rad > 0 && camera.vertical_fov_rad < kPi))
     return refusal(fmt::format("field of view of {:g}°; above 0 and below 180", deg_from_rad(camera.vertical_fov_rad)));
+  if (!std::isfinite(camera.roll_rad) || !std::isfinite(camera.distortion))
+    return refusal("the camera's roll or distortion is not finite");
   const double ahead_m = (camera.target_world_m - camera.eye_world_m).norm();
   if (!(ahead_m > 0) || !std::isfinite(ahead_m)) return refusal("camera's target lies in its eye, or is not finite");
   if (options.max_passes < 1) return refusal("passes must be at least 1");

@@ -15,12 +15,17 @@ namespace luxrig {
 struct Camera {
   Vec3 eye_world_m = Vec3::Zero();
   Vec3 target_world_m = Vec3::UnitY();
-  double vertical_fov_rad = 1.0;  ///< 0 … π
+  double vertical_fov_rad = 1.0;  ///< 0 … π; without distortion
   int width_px = 960, height_px = 600;
+  double roll_rad = 0;  ///< turn about the axis it looks along; positive: its right side goes down
+  /// Radial, about the picture's middle: what a straight lens shows at r, in units of the distance ahead, is where
+  /// r = s / (1 + distortion · s²) for the distance s in the picture. Negative: a barrel.
+  /// Source: A. Fitzgibbon, Simultaneous linear estimation of multiple view geometry and lens distortion (2001).
+  double distortion = 0;
 };
 
-/// Direction of the ray through a point of the picture; x and y in pixels from the top left corner. Up is +Z, or +Y if
-/// the camera looks straight up or down.
+/// Direction of the ray through a point of the picture; x and y in pixels from the top left corner. Without roll, up is
+/// +Z, or +Y if the camera looks straight up or down.
 [[nodiscard]] Vec3 ray_direction(const Camera& camera, double x_px, double y_px);
 
 /// Position of a place in the picture, and the scale there.

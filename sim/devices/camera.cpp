@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
-#include "core/picture/rig_camera.h"
 #include "core/tasks/rig_transport.h"
 #include "sim/world/random.h"
 
@@ -23,8 +23,9 @@ double full_cd_m2(const Picture& picture) {
 
 }  // namespace
 
-Result<Picture> photograph(const RayScene& scene, const Rig& rig, const std::vector<FixtureTruth>& truths,
-                           const LightNow& light, const PictureCamera& camera, const Sensor& sensor, const Shot& shot) {
+Result<Picture> light_on_sensor(const RayScene& scene, const Rig& rig, const std::vector<FixtureTruth>& truths,
+                                const LightNow& light, const CameraTruth& camera, const Shot& shot) {
+  const auto seen_as = [&](std::size_t luminaire) { return camera.response.empty() ? 1 : camera.response[luminaire]; };
   std::vector<Emitter> emitters;
   std::vector<double> levels;
   for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
@@ -32,25 +33,30 @@ Result<Picture> photograph(const RayScene& scene, const Rig& rig, const std::vec
     const Fixture& fixture = rig.fixtures[f];
     emitters.push_back(emitter_of(rig.luminaires[fixture.luminaire],
                                   true_lamp(truths[f], light.joints[f], fixture.roll_rad), light.joints[f].beam_rad));
-    levels.push_back(light.levels[f]);
+    levels.push_back(light.levels[f] * seen_as(fixture.luminaire));
   }
   for (Emitter& day : daylight_emitters_of(rig)) {
     emitters.push_back(std::move(day));
-    levels.push_back(1);
+    levels.push_back(seen_as(rig.luminaires.size()));
   }
   PictureOptions how;
   how.max_passes = shot.passes;
   how.wanted_relative_error = 0;
   how.seed = shot.seed;
   how.threads = shot.threads;
-  auto seen = render_picture(scene, emitters, levels, view_of(camera), how);
+  auto seen = render_picture(scene, emitters, levels, camera.view, how);
   if (!seen) return seen;
   seen->illuminance_lx.clear();
-  const double full = full_cd_m2(*seen) * shot.underexposed;
-  if (!(full > 0)) return seen;  // a dark room
+  through_lens(camera, *seen);
+  return seen;
+}
+
+Picture exposed(Picture on_sensor, const Sensor& sensor, const Shot& shot) {
+  const double full = full_cd_m2(on_sensor) * shot.underexposed;
+  if (!(full > 0)) return on_sensor;  // a dark room
   const double steps = std::exp2(sensor.bits) - 1;
   std::uint64_t sample = shot.number << 32;
-  for (Vec3f& pixel : seen->luminance_cd_m2)
+  for (Vec3f& pixel : on_sensor.luminance_cd_m2)
     for (float& value : pixel) {
       const double electrons = std::min(static_cast<double>(value) / full, 1.0) * sensor.full_well_electrons;
       const double noise = std::sqrt(electrons + sensor.read_noise_electrons * sensor.read_noise_electrons) *
@@ -58,7 +64,14 @@ Result<Picture> photograph(const RayScene& scene, const Rig& rig, const std::vec
       const double share = std::clamp((electrons + noise) / sensor.full_well_electrons, 0.0, 1.0);
       value = static_cast<float>(std::round(share * steps) / steps * full);
     }
-  return seen;
+  return on_sensor;
+}
+
+Result<Picture> photograph(const RayScene& scene, const Rig& rig, const std::vector<FixtureTruth>& truths,
+                           const LightNow& light, const CameraTruth& camera, const Sensor& sensor, const Shot& shot) {
+  auto seen = light_on_sensor(scene, rig, truths, light, camera, shot);
+  if (!seen) return seen;
+  return exposed(std::move(*seen), sensor, shot);
 }
 
 }  // namespace luxrig::sim

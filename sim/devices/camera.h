@@ -1,11 +1,12 @@
 #pragma once
-/// A camera in the simulated world: the true light, through a noisy sensor.
+/// A camera in the simulated world: the true light, through its lens, on a noisy sensor.
 
 #include <vector>
 
 #include "core/picture/picture.h"
 #include "core/rig/rig.h"
 #include "core/scene/ray_scene.h"
+#include "sim/devices/lens.h"
 #include "sim/world/world.h"
 
 namespace luxrig::sim {
@@ -34,9 +35,18 @@ struct Shot {
 
 /// scene   of the rig
 /// truths  World::fixtures
-/// Calibrated: samples are cd/m² again; clipped or noise-buried detail is lost. illuminance_lx stays empty.
+/// The light on the sensor at one instant, as luminance: as the lens shows it, each lamp as this camera sees its kind.
+/// illuminance_lx stays empty.
+[[nodiscard]] Result<Picture> light_on_sensor(const RayScene& scene, const Rig& rig,
+                                              const std::vector<FixtureTruth>& truths, const LightNow& light,
+                                              const CameraTruth& camera, const Shot& shot);
+
+/// That light as the sensor has it. Calibrated: samples are cd/m² again; clipped or noise-buried detail is lost.
+[[nodiscard]] Picture exposed(Picture on_sensor, const Sensor& sensor, const Shot& shot);
+
+/// Both.
 [[nodiscard]] Result<Picture> photograph(const RayScene& scene, const Rig& rig, const std::vector<FixtureTruth>& truths,
-                                         const LightNow& light, const PictureCamera& camera, const Sensor& sensor,
+                                         const LightNow& light, const CameraTruth& camera, const Sensor& sensor,
                                          const Shot& shot);
 
 }  // namespace luxrig::sim

@@ -72,6 +72,14 @@ Deviations Deviations::real() {
   real.meter_latency_max_s = 2;
   real.meter_cosine_exponent = 0.1;
   real.meter_drift_per_hour = 0.001;
+  real.camera_angle_rad = rad_from_deg(1);
+  real.camera_position_m = 0.03;
+  real.camera_field_share = 0.02;
+  real.camera_distortion = 0.02;  // a twentieth or less in the corner of a wide picture
+  real.camera_vignetting = 0.5;
+  real.camera_flare = 0.03;
+  real.camera_halo = 0.03;
+  real.camera_log_response = 0.576;  // half of ln(0.136 / 0.043): factors published for fluorescent and halogen lamps
   return real;
 }
 

@@ -52,6 +52,16 @@ struct Deviations {
   double meter_cosine_exponent = 0;  ///< responds as cos^(1 + up to this) of the angle of incidence
   double meter_drift_per_hour = 0;   ///< gain, up to
 
+  // Cameras; each up to. They are otherwise as in the rig file, with a straight, clean lens that sees as the eye does.
+  double camera_angle_rad = 0;     ///< from where the file has it look
+  double camera_position_m = 0;    ///< from where the file has it
+  double camera_field_share = 0;   ///< of its field of view
+  double camera_distortion = 0;    ///< Camera::distortion
+  double camera_vignetting = 0;    ///< of the light, lost in a corner
+  double camera_flare = 0;         ///< of all light, spread evenly over the picture
+  double camera_halo = 0;          ///< of each pixel's light, spread around it
+  double camera_log_response = 0;  ///< ± logarithm of its reading over the eye's, drawn for each kind of lamp
+
   /// A world exactly as in the rig file: no spread, noise or lag.
   [[nodiscard]] static Deviations none();
   [[nodiscard]] static Deviations real();

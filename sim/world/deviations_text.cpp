@@ -44,6 +44,14 @@ constexpr Field kFields[] = {
     {"meter_latency_max_s", &Deviations::meter_latency_max_s, 60},
     {"meter_cosine_exponent", &Deviations::meter_cosine_exponent, 1},
     {"meter_drift_per_hour", &Deviations::meter_drift_per_hour, 1},
+    {"camera_angle_rad", &Deviations::camera_angle_rad, 1},
+    {"camera_position_m", &Deviations::camera_position_m, 1},
+    {"camera_field_share", &Deviations::camera_field_share, 0.5},
+    {"camera_distortion", &Deviations::camera_distortion, 0.3},
+    {"camera_vignetting", &Deviations::camera_vignetting, 0.9},
+    {"camera_flare", &Deviations::camera_flare, 0.5},
+    {"camera_halo", &Deviations::camera_halo, 0.4},
+    {"camera_log_response", &Deviations::camera_log_response, 2},
 };
 
 /// Kinds, by name.

@@ -39,7 +39,10 @@ enum class Draw : std::uint64_t {
   visit,
   meter_latency,
   meter_cosine,
-  meter_drift
+  meter_drift,
+  camera_place,
+  camera_lens,
+  camera_response
 };
 
 [[nodiscard]] inline std::uint64_t mix64(std::uint64_t x) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 
 #include "core/text/nearest.h"
 #include "tools/command_line/installed.h"
@@ -15,6 +16,7 @@ namespace {
 constexpr std::string_view kRoutes[] = {"/",      "/truth", "/rig",      "/picture",      "/fault",
                                         "/shade", "/cover", "/daylight", "/clear_faults", "/reset_peaks"};
 constexpr double kMostDaylight = 1000;
+constexpr double kLeastUnderexposed = 1e-3, kMostUnderexposed = 1e6;
 
 HttpResponse json_answer(const nlohmann::json& json) {
   return {200, "application/json", json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)};
@@ -66,7 +68,9 @@ class Server final : public ControlHttp {
            return HttpResponse{200, "application/json", parts_.rig_json};
          }},
         {"GET", "/picture",
-         [this](const HttpRequest& request) { return take_picture(request.parameter("camera").value_or("")); }},
+         [this](const HttpRequest& request) {
+           return take_picture(request.parameter("camera").value_or(""), request.parameter("underexposed"));
+         }},
         {"POST", "/fault", [this](const HttpRequest& request) { return switch_fault(request.body); }},
         {"POST", "/shade",
          [this](const HttpRequest& request) {
@@ -105,11 +109,19 @@ class Server final : public ControlHttp {
     return options;
   }
 
-  HttpResponse take_picture(const std::string& name) {
+  HttpResponse take_picture(const std::string& name, const std::optional<std::string>& underexposed) {
     const auto camera = std::find_if(parts_.rig.cameras.begin(), parts_.rig.cameras.end(),
                                      [&](const PictureCamera& known) { return known.name == name; });
     if (camera == parts_.rig.cameras.end()) return http_refusal(404, "the rig has no such camera");
-    auto picture = cameras_.take(*camera);
+    double times = 1;
+    if (underexposed) {
+      const char* const end = underexposed->data() + underexposed->size();
+      const auto [stopped, error] = std::from_chars(underexposed->data(), end, times);
+      if (error != std::errc() || stopped != end || !(times >= kLeastUnderexposed && times <= kMostUnderexposed))
+        return http_refusal(400, fmt::format("underexposed={} is out of range: use {:g} to {:g}", *underexposed,
+                                             kLeastUnderexposed, kMostUnderexposed));
+    }
+    auto picture = cameras_.take(static_cast<std::size_t>(camera - parts_.rig.cameras.begin()), times);
     if (!picture) return http_refusal(500, picture.error().detail);
     return {200, "image/x-portable-floatmap", std::move(*picture)};
   }

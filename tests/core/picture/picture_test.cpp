@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "core/photometry/sky/sky.h"
 #include "tests/core/picture/picture_fixture.h"
 #include "tests/core/transport/lamp_pose.h"
@@ -153,6 +155,37 @@ TEST(Picture, PixelOfIsTheInverseOfRayDirection) {
   EXPECT_FALSE(pixel_of(camera, camera.eye_world_m - (camera.target_world_m - camera.eye_world_m))) << "behind";
   EXPECT_FALSE(pixel_of(camera, camera.eye_world_m));
   EXPECT_FALSE(pixel_of(camera, camera.eye_world_m + ray_direction(camera, 34, 10)));
+}
+
+TEST(Picture, PixelOfIsTheInverseOfRayDirectionOfAnyLens) {
+  std::mt19937_64 random(7);
+  const auto drawn = [&](double from, double to) { return std::uniform_real_distribution(from, to)(random); };
+  for (int k = 0; k < 300; ++k) {
+    Camera camera = looking({drawn(-1, 1), drawn(-1, 1), drawn(-1, 1)}, {drawn(-3, 3), drawn(-3, 3), drawn(1.5, 3)});
+    camera.vertical_fov_rad = drawn(0.2, 1.5);
+    camera.roll_rad = drawn(-kPi, kPi);
+    camera.distortion = drawn(-0.2, 0.05);
+    const double x_px = drawn(0.01, camera.width_px - 0.01), y_px = drawn(0.01, camera.height_px - 0.01);
+    const auto place = pixel_of(camera, camera.eye_world_m + drawn(0.1, 9) * ray_direction(camera, x_px, y_px));
+    ASSERT_TRUE(place) << k;
+    EXPECT_NEAR(place->x_px, x_px, 1e-7) << k;
+    EXPECT_NEAR(place->y_px, y_px, 1e-7) << k;
+  }
+}
+
+TEST(Picture, ARolledCamerasRightSideGoesDownAndABarrelDrawsCornersIn) {
+  Camera camera = looking({0, 0, 0}, {3, 0, 0});
+  camera.width_px = camera.height_px = 100;
+  camera.vertical_fov_rad = kPi / 2;
+  const double before_px = pixel_of(camera, {2, 1, 1})->x_px;  // to the left: 25 px from the middle
+  EXPECT_NEAR(before_px, 25, 1e-9);
+  camera.roll_rad = kPi / 2;  // what was to the left is below
+  EXPECT_NEAR(pixel_of(camera, {2, 1, 0})->x_px, 50, 1e-9);
+  EXPECT_NEAR(pixel_of(camera, {2, 1, 0})->y_px, 75, 1e-9);
+  camera.roll_rad = 0;
+  camera.distortion = -0.1;
+  // r = s / (1 - 0.1 s²) with r = ½: s = 2r / (1 + √(1 + 0.4 r²)).
+  EXPECT_NEAR(pixel_of(camera, {2, 1, 0})->x_px, 50 - 50 * (1 / (1 + std::sqrt(1.1))), 1e-9);
 }
 
 }  // namespace

@@ -14,6 +14,7 @@ struct PhotographedRoom {
   RayScene room{make_cube(8, 0.5)};
   std::vector<FixtureTruth> truths = draw_fixtures(rig, Deviations::none());
   PictureCamera camera;
+  Deviations deviations = Deviations::none();  ///< of the camera
   LightNow light;
 
   PhotographedRoom() {
@@ -25,7 +26,7 @@ struct PhotographedRoom {
     light.joints.resize(3);
   }
   [[nodiscard]] Picture taken(const Sensor& sensor, const Shot& shot) const {
-    const auto picture = photograph(room, rig, truths, light, camera, sensor, shot);
+    const auto picture = photograph(room, rig, truths, light, draw_camera(rig, camera, 0, deviations), sensor, shot);
     EXPECT_TRUE(picture);
     return *picture;
   }

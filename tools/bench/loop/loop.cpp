@@ -222,20 +222,19 @@ Result<MeasuredRig> measure_rig(sim::World& world, const Session& session, const
     shot.seed = deviations.seed;
     shot.number = f;
     shot.passes = kPasses;
-    const auto picture = sim::photograph(true_rays, rig, world.fixtures(), {world.levels(), world.joints()},
-                                         seen.camera, sim::Sensor{}, shot);
-    if (!picture) return tl::unexpected(picture.error());
+    const auto light = sim::light_on_sensor(true_rays, rig, world.fixtures(), {world.levels(), world.joints()},
+                                            sim::draw_camera(rig, seen.camera, 0, sim::Deviations::none()), shot);
+    if (!light) return tl::unexpected(light.error());
+    const Picture picture = sim::exposed(*light, sim::Sensor{}, shot);
     // Bracketed: where this exposure is full, the shorter one.
     shot.underexposed = kBracket;
-    const auto shorter = sim::photograph(true_rays, rig, world.fixtures(), {world.levels(), world.joints()},
-                                         seen.camera, sim::Sensor{}, shot);
-    if (!shorter) return tl::unexpected(shorter.error());
+    const Picture shorter = sim::exposed(*light, sim::Sensor{}, shot);
     float full = 0;
-    for (const Vec3f& pixel : picture->luminance_cd_m2) full = std::max(full, pixel.maxCoeff());
-    Picture merged = *picture;
+    for (const Vec3f& pixel : picture.luminance_cd_m2) full = std::max(full, pixel.maxCoeff());
+    Picture merged = picture;
     for (std::size_t i = 0; i < merged.luminance_cd_m2.size(); ++i)
-      if (merged.luminance_cd_m2[i].maxCoeff() > kFull * full) merged.luminance_cd_m2[i] = shorter->luminance_cd_m2[i];
-    Picture dark = *picture;
+      if (merged.luminance_cd_m2[i].maxCoeff() > kFull * full) merged.luminance_cd_m2[i] = shorter.luminance_cd_m2[i];
+    Picture dark = picture;
     for (Vec3f& pixel : dark.luminance_cd_m2) pixel.setZero();
     measured.seen.emplace_back();
     for (const SeenPlace& place : seen.places) measured.seen.back().push_back(seen_light(merged, dark, place));
