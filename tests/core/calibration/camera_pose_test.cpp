@@ -1,0 +1,167 @@
+#include "core/calibration/camera_pose.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace luxrig {
+namespace {
+
+/// A box, seen from within or without; each its own material.
+void add_box(Scene& scene, const Vec3& from_m, const Vec3& to_m, double reflectance) {
+  const auto first = static_cast<std::uint32_t>(scene.vertices_m.size());
+  for (int corner = 0; corner < 8; ++corner)
+    scene.vertices_m.push_back(Vec3((corner & 1) ? to_m.x() : from_m.x(), (corner & 2) ? to_m.y() : from_m.y(),
+                                    (corner & 4) ? to_m.z() : from_m.z())
+                                   .cast<float>());
+  constexpr std::uint32_t kFaces[6][4] = {{0, 1, 3, 2}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                          {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 3, 7, 5}};
+  Material paint;
+  paint.reflectance_rgb = Vec3::Constant(reflectance);
+  scene.materials.push_back(paint);
+  for (const auto& face : kFaces)
+    for (const int half : {1, 2}) {
+      scene.triangles.push_back({first + face[0], first + face[half], first + face[half + 1]});
+      scene.material_of_triangle.push_back(static_cast<std::uint32_t>(scene.materials.size() - 1));
+      scene.object_of_triangle.push_back(0);
+    }
+}
+
+Scene room_with_boxes() {
+  Scene scene;
+  scene.object_names = {"scene"};
+  add_box(scene, {-4, -3, 0}, {4, 3, 3}, 0.6);
+  add_box(scene, {-3, 2.94, 1}, {-1.8, 3, 2}, 0.25);
+  add_box(scene, {0.2, 2.94, 0.8}, {1.6, 3, 1.9}, 0.35);
+  add_box(scene, {2.5, 0.5, 0}, {3, 1.0, 1.1}, 0.8);
+  add_box(scene, {-1.5, 0.2, 0}, {-1, 0.7, 1.0}, 0.3);
+  add_box(scene, {0.6, -0.6, 0}, {1.1, -0.1, 0.7}, 0.7);
+  return scene;
+}
+
+/// Light from the middle of the ceiling, as cosine and square of distance have it, and some from everywhere. What falls
+/// on a pixel is the mean over it; `noise`: of its logarithm.
+Picture seen_by(const RayScene& rays, const Camera& camera, double noise, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  const Vec3 lamp_m(0.3, -0.5, 2.9);
+  Picture picture;
+  picture.width_px = camera.width_px;
+  picture.height_px = camera.height_px;
+  constexpr int kAcross = 3;
+  for (int y = 0; y < camera.height_px; ++y)
+    for (int x = 0; x < camera.width_px; ++x) {
+      double light = 0;
+      for (int k = 0; k < kAcross * kAcross; ++k) {
+        const double x_px = x + (k % kAcross + 0.5) / kAcross, y_px = y + (k / kAcross + 0.5) / kAcross;
+        const auto hit = rays.nearest(camera.eye_world_m, ray_direction(camera, x_px, y_px), Vec3::Zero());
+        if (!hit) continue;
+        const Vec3 to_lamp_m = lamp_m - hit->position_world_m;
+        const double cosine = std::max(0.0, hit->normal_world.dot(to_lamp_m.normalized()));
+        light += rays.material_of(hit->triangle).luminous_reflectance() * (0.2 + cosine / to_lamp_m.squaredNorm());
+      }
+      picture.luminance_cd_m2.push_back(Vec3f::Constant(static_cast<float>(light * std::exp(noise * normal(random)))));
+    }
+  return picture;
+}
+
+Camera stated_camera() {
+  Camera camera;
+  camera.eye_world_m = {-0.5, -2.6, 1.9};
+  camera.target_world_m = {0.2, 2, 1.0};
+  camera.vertical_fov_rad = 1.0;
+  camera.width_px = 320;
+  camera.height_px = 200;
+  return camera;
+}
+
+/// Off by up to 1° and 3 cm, with a lens of its own.
+Camera true_camera(std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> drawn(-1, 1);
+  Camera camera = stated_camera();
+  for (int axis = 0; axis < 3; ++axis) camera.eye_world_m[axis] += 0.017 * drawn(random);
+  camera.target_world_m = camera.eye_world_m + (stated_camera().target_world_m - stated_camera().eye_world_m);
+  camera.target_world_m += 0.06 * Vec3(drawn(random), 0, drawn(random));
+  camera.roll_rad = 0.01 * drawn(random);
+  camera.vertical_fov_rad *= 1 + 0.02 * drawn(random);
+  camera.distortion = 0.02 * drawn(random);
+  return camera;
+}
+
+/// Distances between where two cameras show what the first sees, over the picture.
+std::vector<double> apart_px(const RayScene& rays, const Camera& a, const Camera& b) {
+  std::vector<double> apart;
+  for (int y = 10; y < a.height_px; y += 20)
+    for (int x = 10; x < a.width_px; x += 20) {
+      const auto hit = rays.nearest(a.eye_world_m, ray_direction(a, x, y), Vec3::Zero());
+      const auto place = pixel_of(b, hit->position_world_m);
+      if (place) apart.push_back(std::hypot(place->x_px - x, place->y_px - y));
+    }
+  std::sort(apart.begin(), apart.end());
+  return apart;
+}
+
+TEST(CameraPose, IsFoundFromEdgesOfTheRoomWithinItsStatedError) {
+  const RayScene rays(room_with_boxes());
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const Camera truth = true_camera(seed);
+    const auto found = find_camera(rays, stated_camera(), seen_by(rays, truth, 0.02, seed));
+    ASSERT_TRUE(found) << found.error().detail;
+    const auto before = apart_px(rays, truth, stated_camera()), after = apart_px(rays, truth, found->camera);
+    std::printf("seed %d: %.2f px before, %.2f px after, worst %.2f, stated %.2f, held out %.2f, %zu edges\n",
+                static_cast<int>(seed), before[before.size() / 2], after[after.size() / 2], after.back(),
+                found->standard_error_px, found->off_px, found->edges);
+    EXPECT_LT(after[after.size() / 2], 0.2);
+    EXPECT_LT(after.back(), 1);
+    EXPECT_LT(after[after.size() / 2], 3 * found->standard_error_px);
+    EXPECT_LT(found->off_px, 0.3);
+  }
+}
+
+TEST(CameraPose, OfTheStatedCameraIsTheStatedCamera) {
+  const RayScene rays(room_with_boxes());
+  const auto found = find_camera(rays, stated_camera(), seen_by(rays, stated_camera(), 0, 1));
+  ASSERT_TRUE(found) << found.error().detail;
+  EXPECT_LT(apart_px(rays, stated_camera(), found->camera).back(), 0.3);
+  EXPECT_LT(found->stated_off_px, 0.1);
+}
+
+TEST(CameraPose, IsRefusedWhenThePictureDoesNotTellIt) {
+  const RayScene rays(room_with_boxes());
+  const auto words_for = [&](const RayScene& scene, const Camera& stated, const Picture& picture) {
+    const auto found = find_camera(scene, stated, picture);
+    return found ? "found" : found.error().detail;
+  };
+  const Camera stated = stated_camera();
+  Picture black = seen_by(rays, stated, 0, 1);
+  for (Vec3f& pixel : black.luminance_cd_m2) pixel.setZero();
+  EXPECT_NE(words_for(rays, stated, black).find("light more of the room"), std::string::npos);
+
+  Picture noise = black;
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<float> any(0, 1);
+  for (Vec3f& pixel : noise.luminance_cd_m2) pixel.setConstant(any(random));
+  EXPECT_NE(words_for(rays, stated, noise), "found");
+
+  Camera elsewhere = stated;  // another view altogether
+  elsewhere.eye_world_m = {2.5, -2.5, 1.2};
+  elsewhere.target_world_m = {-3, 1.5, 1.4};
+  EXPECT_NE(words_for(rays, stated, seen_by(rays, elsewhere, 0.01, 1)), "found");
+
+  Scene bare;
+  bare.object_names = {"scene"};
+  add_box(bare, {-4, -3, 0}, {4, 3, 3}, 0.6);
+  const RayScene wall(bare);
+  Camera at_wall = stated;  // sees nothing but one wall
+  at_wall.eye_world_m = {0, 1.5, 1.5};
+  at_wall.target_world_m = {0, 3, 1.5};
+  at_wall.vertical_fov_rad = 0.6;
+  EXPECT_NE(words_for(wall, at_wall, seen_by(wall, at_wall, 0.01, 1)).find("edges of the scene at 0 places"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace luxrig
