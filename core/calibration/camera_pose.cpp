@@ -35,7 +35,7 @@ constexpr double kReach_px[] = {8, 8, 6, 6, 4, 4, 4, 3, 3, 3, 2, 2, 2, 2, 2, 2};
 constexpr double kTestReach_px = 6;
 constexpr double kMostOff_px = 0.8, kMostError_px = 0.7;
 /// An edge's change of brightness is this many times what is usual in the picture.
-constexpr double kOverUsual = 4;
+constexpr double kOverUsual = 3;
 constexpr double kFarthest = 3;  // standard deviations of what is stated
 constexpr double kLeastScatter_px = 0.1;
 /// Places along one edge are off together: so many count as one.
@@ -69,30 +69,38 @@ class Gradient {
     for (double& value : light) value = mean > 0 ? std::log(value / mean + kDark) : 0;
     for (int k = 0; k < smoothings; ++k) smooth(light);
     change_.resize(light.size(), Vector2d::Zero());
-    std::vector<double> sizes;
     for (int y = 1; y + 1 < height_; ++y)
-      for (int x = 1; x + 1 < width_; ++x) {
+      for (int x = 1; x + 1 < width_; ++x)
         change_[at(x, y)] = {(light[at(x + 1, y)] - light[at(x - 1, y)]) / 2,
                              (light[at(x, y + 1)] - light[at(x, y - 1)]) / 2};
-        sizes.push_back(change_[at(x, y)].norm());
-      }
+    constexpr int kEvery = 5;
+    std::vector<double> sizes;
+    for (int y = kEvery; y + kEvery < height_; y += kEvery)
+      for (int x = kEvery; x + kEvery < width_; x += kEvery)
+        for (const Vector2d& normal : {Vector2d(1, 0), Vector2d(0, 1)}) sizes.push_back(across({x, y}, normal));
+    if (sizes.empty()) return;
     const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
     std::nth_element(sizes.begin(), middle, sizes.end());
-    usual_ = std::max(1e-9, *middle);
+    usual_ = std::max(usual_, *middle);
   }
-  /// Across an edge with this normal, at a place from the top left corner.
+  /// Across an edge with this normal, at a place from the top left corner: the mean along a short piece of the edge.
   [[nodiscard]] double across(const Vector2d& place_px, const Vector2d& normal) const {
-    const double x = place_px.x() - 0.5, y = place_px.y() - 0.5;
-    const int left = static_cast<int>(std::floor(x)), top = static_cast<int>(std::floor(y));
-    if (left < 0 || top < 0 || left + 1 >= width_ || top + 1 >= height_) return 0;
-    const double u = x - left, v = y - top;
-    return std::abs(((1 - v) * ((1 - u) * change_[at(left, top)] + u * change_[at(left + 1, top)]) +
-                     v * ((1 - u) * change_[at(left, top + 1)] + u * change_[at(left + 1, top + 1)]))
-                        .dot(normal));
+    constexpr int kAlong_px = 3;
+    Vector2d sum = Vector2d::Zero();
+    for (int k = -kAlong_px; k <= kAlong_px; ++k) sum += change(place_px + k * Vector2d(-normal.y(), normal.x()));
+    return std::abs(sum.dot(normal)) / (2 * kAlong_px + 1);
   }
   [[nodiscard]] double usual() const { return usual_; }
 
  private:
+  [[nodiscard]] Vector2d change(const Vector2d& place_px) const {
+    const double x = place_px.x() - 0.5, y = place_px.y() - 0.5;
+    const int left = static_cast<int>(std::floor(x)), top = static_cast<int>(std::floor(y));
+    if (left < 0 || top < 0 || left + 1 >= width_ || top + 1 >= height_) return Vector2d::Zero();
+    const double u = x - left, v = y - top;
+    return (1 - v) * ((1 - u) * change_[at(left, top)] + u * change_[at(left + 1, top)]) +
+           v * ((1 - u) * change_[at(left, top + 1)] + u * change_[at(left + 1, top + 1)]);
+  }
   [[nodiscard]] std::size_t at(int x, int y) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
   }
@@ -110,7 +118,7 @@ class Gradient {
   }
   int width_, height_;
   std::vector<Vector2d> change_;
-  double usual_ = 0;
+  double usual_ = 1e-9;  ///< median of across()
 };
 
 std::optional<Vector2d> shown(const Camera& camera, const SceneEdge& edge) {
@@ -142,6 +150,8 @@ Change best_turn(const Gradient& gradient, const Camera& stated, std::span<const
   const double per_px = 2 * std::tan(stated.vertical_fov_rad / 2) / stated.height_px;
   const double most_rad = std::max(0.02, 4 * per_px), step_rad = 2 * per_px;
   const int steps = static_cast<int>(std::ceil(most_rad / step_rad));
+  constexpr std::size_t kEnough = 400;
+  const std::size_t every = std::max<std::size_t>(1, edges.size() / kEnough);
   Change best = Change::Zero();
   double best_score = -1;
   for (const double roll_rad : {-0.012, 0.0, 0.012})
@@ -152,9 +162,9 @@ Change best_turn(const Gradient& gradient, const Camera& stated, std::span<const
           by.segment<4>(3) << i * step_rad, j * step_rad, roll_rad, field;
           const Camera camera = changed(stated, by);
           double score = 0;
-          for (const SceneEdge& edge : edges)
-            if (const auto place = shown(camera, edge)) {
-              const double change = gradient.across(*place, edge.normal_px);
+          for (std::size_t e = 0; e < edges.size(); e += every)
+            if (const auto place = shown(camera, edges[e])) {
+              const double change = gradient.across(*place, edges[e].normal_px);
               score +=
                   change / (change + kOverUsual * gradient.usual());  // a lamp's edge is not worth a hundred others
             }
@@ -253,10 +263,11 @@ double shown_off_px(const Camera& a, const Camera& b, std::span<const SceneEdge>
   return off.empty() ? INFINITY : median_of(std::move(off));
 }
 
-/// Root mean square over the picture of the error of where places are shown.
+/// Median over the picture of the error of where places are shown: what is at arm's length moves by much, and matters
+/// little.
 double error_of_places_px(const RayScene& rays, const Camera& camera, const Square& covariance) {
   constexpr int kAcross = 12;
-  double sum_px2 = 0, count = 0;
+  std::vector<double> error_px;
   for (int i = 0; i < kAcross * kAcross; ++i) {
     const double x_px = (i % kAcross + 0.5) / kAcross * camera.width_px;
     const double y_px = (i / kAcross + 0.5) / kAcross * camera.height_px;
@@ -268,10 +279,9 @@ double error_of_places_px(const RayScene& rays, const Camera& camera, const Squa
       slope.col(k).setZero();
       if (place) slope.col(k) = (Vector2d(place->x_px, place->y_px) - Vector2d(x_px, y_px)) / kStep[k];
     }
-    sum_px2 += (slope * covariance * slope.transpose()).trace();
-    ++count;
+    error_px.push_back(std::sqrt((slope * covariance * slope.transpose()).trace()));
   }
-  return count > 0 ? std::sqrt(sum_px2 / count) : INFINITY;
+  return error_px.empty() ? INFINITY : median_of(std::move(error_px));
 }
 
 }  // namespace

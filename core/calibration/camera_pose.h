@@ -21,7 +21,7 @@ struct FoundCamera {
   std::size_t edges = 0;     ///< places on edges that the picture shows
   double stated_off_px = 0;  ///< median distance of those from where the stated camera would show them, across the edge
   double off_px = 0;         ///< the same with the found camera, of edges that the fit did not use
-  double standard_error_px = 0;  ///< of where the found camera shows a place; root mean square over the picture
+  double standard_error_px = 0;  ///< of where the found camera shows a place; median over the picture
 };
 
 /// picture: with most of the room lit, of the stated camera's size (asserted). The truth is within 2° and 10 cm of what

@@ -1,0 +1,51 @@
+#pragma once
+/// Shared by the tests of cameras: a room with boxes, and a camera in it.
+
+#include "core/picture/picture.h"
+#include "core/scene/scene.h"
+
+namespace luxrig::box_room {
+
+/// A box, seen from within or without; each its own material.
+inline void add_box(Scene& scene, const Vec3& from_m, const Vec3& to_m, double reflectance) {
+  const auto first = static_cast<std::uint32_t>(scene.vertices_m.size());
+  for (int corner = 0; corner < 8; ++corner)
+    scene.vertices_m.push_back(Vec3((corner & 1) ? to_m.x() : from_m.x(), (corner & 2) ? to_m.y() : from_m.y(),
+                                    (corner & 4) ? to_m.z() : from_m.z())
+                                   .cast<float>());
+  constexpr std::uint32_t kFaces[6][4] = {{0, 1, 3, 2}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                          {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 3, 7, 5}};
+  Material paint;
+  paint.reflectance_rgb = Vec3::Constant(reflectance);
+  scene.materials.push_back(paint);
+  for (const auto& face : kFaces)
+    for (const int half : {1, 2}) {
+      scene.triangles.push_back({first + face[0], first + face[half], first + face[half + 1]});
+      scene.material_of_triangle.push_back(static_cast<std::uint32_t>(scene.materials.size() - 1));
+      scene.object_of_triangle.push_back(0);
+    }
+}
+
+inline Scene room_with_boxes() {
+  Scene scene;
+  scene.object_names = {"scene"};
+  add_box(scene, {-4, -3, 0}, {4, 3, 3}, 0.6);
+  add_box(scene, {-3, 2.94, 1}, {-1.8, 3, 2}, 0.25);
+  add_box(scene, {0.2, 2.94, 0.8}, {1.6, 3, 1.9}, 0.35);
+  add_box(scene, {2.5, 0.5, 0}, {3, 1.0, 1.1}, 0.8);
+  add_box(scene, {-1.5, 0.2, 0}, {-1, 0.7, 1.0}, 0.3);
+  add_box(scene, {0.6, -0.6, 0}, {1.1, -0.1, 0.7}, 0.7);
+  return scene;
+}
+
+inline Camera stated_camera() {
+  Camera camera;
+  camera.eye_world_m = {-0.5, -2.6, 1.9};
+  camera.target_world_m = {0.2, 2, 1.0};
+  camera.vertical_fov_rad = 1.0;
+  camera.width_px = 320;
+  camera.height_px = 200;
+  return camera;
+}
+
+}  // namespace luxrig::box_room
