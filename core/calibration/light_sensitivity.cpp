@@ -60,6 +60,16 @@ void differences(const MatrixXd& lux, const VectorXd& step, MatrixXd& slope, Mat
     }
 }
 
+/// The first point that is where this one is: a camera sees places that are points of the rig.
+std::size_t place_of(const Rig& rig, std::size_t point) {
+  constexpr double kSame_m = 1e-6;
+  for (std::size_t p = 0; p < point; ++p)
+    if ((rig.points[p].position_world_m - rig.points[point].position_world_m).norm() < kSame_m &&
+        (rig.points[p].normal_world - rig.points[point].normal_world).norm() < kSame_m)
+      return p;
+  return point;
+}
+
 }  // namespace
 
 Result<LightSensitivity> mount_sensitivity(const Rig& rig, const RayScene& rays, const TransportMatrix& light,
@@ -72,9 +82,10 @@ Result<LightSensitivity> mount_sensitivity(const Rig& rig, const RayScene& rays,
   LUXRIG_CHECK(mounts.empty() || static_cast<Index>(mounts.size()) == fixtures, "{} mounts", mounts.size());
   LightSensitivity sensitivity;
   sensitivity.lux = light.lux_per_level.leftCols(fixtures);
-  for (std::size_t p = 0; p < rig.points.size(); ++p) sensitivity.place.push_back(p);
+  for (std::size_t p = 0; p < rig.points.size(); ++p) sensitivity.place.push_back(place_of(rig, p));
   for (std::size_t m = 0; m < rig.luxmeters.size(); ++m)
-    sensitivity.place.push_back(rig.luxmeters[m].point.value_or(rig.points.size() + m));
+    sensitivity.place.push_back(rig.luxmeters[m].point ? sensitivity.place[*rig.luxmeters[m].point]
+                                                       : rig.points.size() + m);
   sensitivity.mount.resize(rig.fixtures.size());
   sensitivity.bend.resize(rig.fixtures.size());
   const auto direct = make_direct_evaluator(rays);

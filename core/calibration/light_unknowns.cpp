@@ -34,7 +34,8 @@ LightUnknowns::LightUnknowns(LightSensitivity sensitivity, LightPriors priors)
     sd.segment(mount_at(j) + 3, 3).setConstant(priors_.angle_rad);
   }
   sd.segment(paint_at(0), materials()).setConstant(priors_.reflectance);
-  sd.tail(meters()) = priors_.log_meter;
+  sd.segment(meter_at(0), meters()) = priors_.log_meter;
+  sd.tail(priors_.stray.size()) = priors_.stray;
   prior_variance_ = sd.cwiseAbs2();
   take_output_priors();
   value_.setZero(unknowns());
@@ -67,12 +68,36 @@ void LightUnknowns::check(const LightSensitivity& sensitivity) const {
                "{} places of {} receivers", sensitivity.place.size(), light_.lux.rows());
 }
 
+void LightUnknowns::check(const Showing& showing) const {
+  const auto known = [](std::size_t entry, Index count) { return static_cast<Index>(entry) < count; };
+  bool fine = showing.of_lamp.empty() || static_cast<Index>(showing.of_lamp.size()) == fixtures();
+  for (const std::size_t of : showing.of_lamp) fine = fine && known(of, meters());
+  for (const Showing::Part& part : showing.factors) fine = fine && known(part.of, meters());
+  for (const Showing::Part& part : showing.stray) fine = fine && known(part.of, priors_.stray.size());
+  LUXRIG_CHECK(fine && (!showing.paint || known(*showing.paint, materials())),
+               "a camera's parts are not of these priors: {} instruments, {} shares of stray light, {} materials",
+               meters(), priors_.stray.size(), materials());
+}
+
 std::size_t LightUnknowns::place_of(std::size_t receiver) const {
   return light_.place.empty() ? receiver : light_.place[receiver];
 }
 
+double LightUnknowns::shown_share(const Showing& showing) const {
+  double log_share = 0;
+  for (const Showing::Part& part : showing.factors)
+    log_share += part.weight * value_[meter_at(static_cast<Index>(part.of))];
+  return std::exp(log_share) * (showing.paint ? paint(*showing.paint) : 1);
+}
+
+double LightUnknowns::lamp_share(const Showing& showing, Index fixture) const {
+  if (showing.of_lamp.empty()) return 1;
+  return meter_gain(showing.of_lamp[static_cast<std::size_t>(fixture)]);
+}
+
 double LightUnknowns::light_and_slope(const LightQuery& query, double fixed_lx, VectorXd& slope) const {
   slope.setZero(unknowns());
+  const Showing& showing = query.showing;
   const auto r = static_cast<Index>(query.receiver);
   double lux = 0;
   for (Index j = 0; j < fixtures(); ++j) {
@@ -83,26 +108,38 @@ double LightUnknowns::light_and_slope(const LightQuery& query, double fixed_lx, 
                                                   taken_at_.segment(kMountUnknowns * j, kMountUnknowns));
     for (Index p = 0; p < materials(); ++p)
       of_lamp += light_.paint[static_cast<std::size_t>(p)](r, j) * value_[paint_at(p)];
-    const double full = level * std::exp(value_[j]);
+    const double full = level * std::exp(value_[j]) * lamp_share(showing, j);
     lux += full * of_lamp;
     slope[j] = full * of_lamp;
+    if (!showing.of_lamp.empty())
+      slope[meter_at(static_cast<Index>(showing.of_lamp[static_cast<std::size_t>(j)]))] += full * of_lamp;
     slope.segment(mount_at(j), kMountUnknowns) = full * mount.transpose();
     for (Index p = 0; p < materials(); ++p)
       slope[paint_at(p)] += full * light_.paint[static_cast<std::size_t>(p)](r, j);
   }
-  if (!query.meter) return lux + fixed_lx;
-  const Index meter = meter_at(static_cast<Index>(*query.meter));
-  const double gain = std::exp(value_[meter]);
+  double gain = shown_share(showing);
+  if (query.meter) gain *= meter_gain(*query.meter);
   slope *= gain;
-  slope[meter] = gain * lux;
-  return gain * lux + fixed_lx;
+  if (query.meter) slope[meter_at(static_cast<Index>(*query.meter))] += gain * lux;
+  for (const Showing::Part& part : showing.factors)
+    slope[meter_at(static_cast<Index>(part.of))] += part.weight * gain * lux;
+  if (showing.paint) slope[paint_at(static_cast<Index>(*showing.paint))] += gain * lux / paint(*showing.paint);
+  double shown = gain * lux + fixed_lx;
+  for (const Showing::Part& part : showing.stray) {
+    slope[stray_at(static_cast<Index>(part.of))] += part.weight;
+    shown += part.weight * stray(part.of);
+  }
+  return shown;
 }
 
 double LightUnknowns::rest_covariance(const LightQuery& a, const LightQuery& b) const {
   if (place_of(a.receiver) != place_of(b.receiver)) return 0;
-  const auto of_a = light_.lux.row(static_cast<Index>(a.receiver)).cwiseProduct(a.level.transpose());
-  const auto of_b = light_.lux.row(static_cast<Index>(b.receiver)).cwiseProduct(b.level.transpose());
-  return of_a.dot(of_b) * priors_.rest_share * priors_.rest_share;
+  double sum_lx2 = 0;
+  for (Index j = 0; j < fixtures(); ++j)
+    if (a.level[j] != 0 && b.level[j] != 0)
+      sum_lx2 += light_.lux(static_cast<Index>(a.receiver), j) * light_.lux(static_cast<Index>(b.receiver), j) *
+                 a.level[j] * b.level[j] * lamp_share(a.showing, j) * lamp_share(b.showing, j);
+  return sum_lx2 * shown_share(a.showing) * shown_share(b.showing) * priors_.rest_share * priors_.rest_share;
 }
 
 void LightUnknowns::learn(std::span<const LightReading> readings) {
@@ -113,7 +150,8 @@ void LightUnknowns::learn(std::span<const LightReading> readings) {
                  reading.level.size());
     LUXRIG_CHECK(reading.standard_error_lx > 0, "a reading with an error of {} lx", reading.standard_error_lx);
     readings_.push_back(reading);
-    asked_.push_back({reading.receiver, reading.level, reading.meter});
+    check(reading.showing);
+    asked_.push_back({reading.receiver, reading.level, reading.meter, reading.showing});
   }
   estimate();
 }
@@ -126,17 +164,22 @@ void LightUnknowns::relinearise(LightSensitivity sensitivity) {
   estimate();
 }
 
+void LightUnknowns::rest_of_readings() {
+  const auto count = static_cast<Index>(asked_.size());
+  rest_.resize(count, count);
+  for (Index a = 0; a < count; ++a)
+    for (Index b = 0; b <= a; ++b)
+      rest_(a, b) = rest_(b, a) =
+          rest_covariance(asked_[static_cast<std::size_t>(a)], asked_[static_cast<std::size_t>(b)]);
+}
+
 void LightUnknowns::estimate() {
   const auto count = static_cast<Index>(readings_.size());
   surprise_.assign(readings_.size(), 0);
   slopes_.resize(count, unknowns());
-  MatrixXd rest(count, count);
-  for (Index a = 0; a < count; ++a)
-    for (Index b = 0; b <= a; ++b)
-      rest(a, b) = rest(b, a) =
-          rest_covariance(asked_[static_cast<std::size_t>(a)], asked_[static_cast<std::size_t>(b)]);
   VectorXd slope, off(count), variance(count);
   for (int round = 0; round < kRounds && count > 0; ++round) {
+    rest_of_readings();
     for (Index k = 0; k < count; ++k) {
       const LightReading& reading = readings_[static_cast<std::size_t>(k)];
       off[k] = reading.lux - light_and_slope(asked_[static_cast<std::size_t>(k)], reading.fixed_lx, slope);
@@ -145,8 +188,9 @@ void LightUnknowns::estimate() {
           reading.standard_error_lx * reading.standard_error_lx / weight_of(surprise_[static_cast<std::size_t>(k)]);
     }
     off += slopes_ * value_;
-    MatrixXd innovation = slopes_ * prior_variance_.asDiagonal() * slopes_.transpose() + rest;
+    MatrixXd innovation = slopes_ * prior_variance_.asDiagonal() * slopes_.transpose() + rest_;
     innovation.diagonal() += variance;
+    noise_variance_ = variance;
     innovation_.compute(innovation);
     explained_ = innovation_.solve(off);
     const VectorXd step = prior_variance_.cwiseProduct(slopes_.transpose() * explained_) - value_;
@@ -197,7 +241,7 @@ MatrixXd LightUnknowns::covariance(std::span<const LightQuery> queries) const {
 }
 
 LightEstimate LightUnknowns::at(std::size_t receiver, const VectorXd& level) const {
-  const LightQuery query{receiver, level, {}};
+  const LightQuery query{receiver, level, {}, {}};
   VectorXd slope;
   LightEstimate estimate;
   estimate.lux = light_and_slope(query, 0, slope);
@@ -208,6 +252,30 @@ LightEstimate LightUnknowns::at(std::size_t receiver, const VectorXd& level) con
   estimate.lux += bent_lx;
   estimate.standard_error_lx = std::sqrt(std::max(0.0, covariance({&query, 1})(0, 0) + bent_variance));
   return estimate;
+}
+
+LightBudget LightUnknowns::budget(std::size_t receiver, const VectorXd& level) const {
+  const LightQuery query{receiver, level, {}, {}};
+  VectorXd left;  // slope of the estimate's error by each unknown
+  (void)light_and_slope(query, 0, left);
+  LightBudget budget;
+  budget.rest = rest_covariance(query, query);
+  if (!readings_.empty()) {
+    const VectorXd shared = shared_with_readings({&query, 1}, left.transpose()).transpose();
+    const VectorXd weight = innovation_.solve(shared);
+    left -= slopes_.transpose() * weight;
+    budget.noise = weight.cwiseAbs2().dot(noise_variance_);
+    for (Index k = 0; k < weight.size(); ++k)
+      budget.rest -= 2 * weight[k] * rest_covariance(query, asked_[static_cast<std::size_t>(k)]);
+    budget.rest += weight.dot(rest_ * weight);
+  }
+  const VectorXd variance = left.cwiseAbs2().cwiseProduct(prior_variance_);
+  budget.output = variance.head(fixtures()).sum();
+  budget.mount = variance.segment(mount_at(0), kMountUnknowns * fixtures()).sum();
+  budget.paint = variance.segment(paint_at(0), materials()).sum();
+  budget.instrument = variance.segment(meter_at(0), meters());
+  budget.stray = variance.tail(priors_.stray.size());
+  return budget;
 }
 
 std::pair<double, double> LightUnknowns::of_bend(Index receiver, const VectorXd& level) const {
@@ -266,6 +334,12 @@ double LightUnknowns::meter_gain(std::size_t meter) const {
 
 double LightUnknowns::meter_gain_standard_error(std::size_t meter) const {
   return meter_gain(meter) * std::sqrt(variance_of(meter_at(static_cast<Index>(meter))));
+}
+
+double LightUnknowns::stray(std::size_t entry) const { return value_[stray_at(static_cast<Index>(entry))]; }
+
+double LightUnknowns::stray_standard_error(std::size_t entry) const {
+  return std::sqrt(variance_of(stray_at(static_cast<Index>(entry))));
 }
 
 }  // namespace luxrig

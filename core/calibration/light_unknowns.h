@@ -1,12 +1,14 @@
 #pragma once
 /// What is not known of a rig's light, as one Gaussian: the output of each lamp, how its mount is off, the room's paint,
-/// the gain of each luxmeter, and a rest of each lamp's light at each place that none of these explains. Readings under
-/// known levels narrow it; light at any receiver follows from it, with its standard error.
+/// the gain of each luxmeter, how a camera shows light, and a rest of each lamp's light at each place that none of these
+/// explains. Readings under known levels narrow it; light at any receiver follows from it, with its standard error.
 ///
-///   reading = e^γ(meter) · (Σ_j level_j (e^g(j) (L_j + Σ_k D_jk θ_jk + Σ_p P_pj ρ_p) + L_j δ_j(place)) + fixed)
+///   reading = e^γ(meter) · (Σ_j level_j (e^g(j) (L_j + Σ_k D_jk θ_jk + Σ_p P_pj ρ_p) + L_j δ_j(place))) + fixed
 ///
 /// L, D, P: LightSensitivity. The light changes in proportion to mount and paint only near where they were taken, so
-/// whoever has found a mount to be far off takes them anew there (relinearise).
+/// whoever has found a mount to be far off takes them anew there (relinearise). A camera (Showing) multiplies each lamp's
+/// light by its response to that kind of lamp, and all by what its lens loses there and by the true reflectance of the
+/// paint that it sees, and adds stray light.
 ///
 /// The estimate is the maximum a posteriori, by Gauss-Newton in the space of the readings: there are far fewer of them
 /// than unknowns, and the rest costs nothing there. Readings that no values explain weigh less (Student's t).
@@ -49,7 +51,20 @@ struct LightPriors {
   double angle_rad = 0.03;      ///< per axis
   double reflectance = 0.1;     ///< relative
   double rest_share = 0.02;     ///< of a lamp's light at a place
-  Eigen::VectorXd log_meter{};  ///< per instrument: the rig's luxmeters, then those in a hand
+  Eigen::VectorXd log_meter{};  ///< per instrument: the rig's luxmeters, those in a hand, then what a camera has
+  Eigen::VectorXd stray{};      ///< shares of stray light, such as a lens's flare
+};
+
+/// How a camera shows light beside the factor of its meter. Instruments: of LightPriors::log_meter.
+struct Showing {
+  struct Part {
+    std::size_t of = 0;
+    double weight = 0;
+  };
+  std::vector<Part> factors{};         ///< instruments whose logarithms count too, each times its weight
+  std::vector<std::size_t> of_lamp{};  ///< per fixture: the instrument whose factor its light has; empty = none
+  std::optional<std::size_t> paint{};  ///< the material seen: true over stated reflectance is a factor
+  std::vector<Part> stray{};           ///< of LightPriors::stray: that share of these lux is added
 };
 
 /// Light at a receiver under some levels; as this instrument shows it, if there is one.
@@ -57,6 +72,7 @@ struct LightQuery {
   std::size_t receiver = 0;
   Eigen::VectorXd level;  ///< per fixture: its light over that at level 1, as known
   std::optional<std::size_t> meter{};
+  Showing showing{};
 };
 
 struct LightReading {
@@ -65,11 +81,21 @@ struct LightReading {
   double standard_error_lx = 0;  ///< of its noise, > 0
   Eigen::VectorXd level;         ///< as in LightQuery
   double fixed_lx = 0;           ///< light of no fixture in it, as the meter shows it
+  Showing showing{};
 };
 
 struct LightEstimate {
   double lux = 0, standard_error_lx = 0;
   [[nodiscard]] double share_of_error() const { return lux > 0 ? standard_error_lx / lux : 0; }
+};
+
+/// What the variance of an estimate is made of [lx²]: its parts sum to it.
+struct LightBudget {
+  double output = 0, mount = 0, paint = 0;  ///< of all lamps, all mounts, all materials
+  Eigen::VectorXd instrument;               ///< per entry of LightPriors::log_meter
+  Eigen::VectorXd stray;                    ///< per entry of LightPriors::stray
+  double rest = 0, noise = 0;               ///< of light that nothing explains, and of the readings
+  [[nodiscard]] double sum() const { return output + mount + paint + instrument.sum() + stray.sum() + rest + noise; }
 };
 
 class LightUnknowns {
@@ -90,6 +116,9 @@ class LightUnknowns {
   /// Covariance of what is asked for, by the linear model [lx²].
   [[nodiscard]] Eigen::MatrixXd covariance(std::span<const LightQuery> queries) const;
 
+  /// Why the light there is not better known: the standard error is of the linear model, as in covariance().
+  [[nodiscard]] LightBudget budget(std::size_t receiver, const Eigen::VectorXd& level) const;
+
   /// Output over rated flux.
   [[nodiscard]] double gain(std::size_t fixture) const;
   [[nodiscard]] double gain_standard_error(std::size_t fixture) const;
@@ -104,6 +133,9 @@ class LightUnknowns {
   /// Reading over light.
   [[nodiscard]] double meter_gain(std::size_t meter) const;
   [[nodiscard]] double meter_gain_standard_error(std::size_t meter) const;
+  /// Share of stray light, of LightPriors::stray.
+  [[nodiscard]] double stray(std::size_t entry) const;
+  [[nodiscard]] double stray_standard_error(std::size_t entry) const;
   /// All that were learnt, in order.
   [[nodiscard]] const std::vector<LightReading>& readings() const { return readings_; }
   /// Of the last estimate, per reading: by how many standard errors it is off what all together say.
@@ -116,18 +148,24 @@ class LightUnknowns {
   [[nodiscard]] Eigen::Index mount_at(Eigen::Index fixture) const { return fixtures() + kMountUnknowns * fixture; }
   [[nodiscard]] Eigen::Index paint_at(Eigen::Index material) const { return mount_at(fixtures()) + material; }
   [[nodiscard]] Eigen::Index meter_at(Eigen::Index meter) const { return paint_at(materials()) + meter; }
-  [[nodiscard]] Eigen::Index unknowns() const { return meter_at(meters()); }
+  [[nodiscard]] Eigen::Index stray_at(Eigen::Index entry) const { return meter_at(meters()) + entry; }
+  [[nodiscard]] Eigen::Index unknowns() const { return stray_at(priors_.stray.size()); }
 
   void check(const LightSensitivity& sensitivity) const;
   void take_output_priors();
+  void check(const Showing& showing) const;
   [[nodiscard]] std::size_t place_of(std::size_t receiver) const;
   /// What is asked for without the rest, and its derivative by all unknowns.
   [[nodiscard]] double light_and_slope(const LightQuery& query, double fixed_lx, Eigen::VectorXd& slope) const;
+  /// What a camera multiplies all light by, and one lamp's alone.
+  [[nodiscard]] double shown_share(const Showing& showing) const;
+  [[nodiscard]] double lamp_share(const Showing& showing, Eigen::Index fixture) const;
   /// Covariance of two queries' rests, before anything is measured.
   [[nodiscard]] double rest_covariance(const LightQuery& a, const LightQuery& b) const;
   /// Of queries with the readings: queries × readings.
   [[nodiscard]] Eigen::MatrixXd shared_with_readings(std::span<const LightQuery> queries,
                                                      const Eigen::MatrixXd& slopes) const;
+  void rest_of_readings();
   void estimate();
   [[nodiscard]] double variance_of(Eigen::Index unknown) const;
   /// Mean and variance that the bend of the light adds at a receiver.
@@ -141,6 +179,8 @@ class LightUnknowns {
   std::vector<LightReading> readings_;
   std::vector<LightQuery> asked_;            ///< of the readings
   Eigen::MatrixXd slopes_;                   ///< readings × unknowns
+  Eigen::VectorXd noise_variance_;           ///< of the readings, as they were weighed
+  Eigen::MatrixXd rest_;                     ///< readings × readings: rest_covariance()
   Eigen::LDLT<Eigen::MatrixXd> innovation_;  ///< covariance of the readings
   Eigen::VectorXd explained_;                ///< innovation⁻¹ · what the readings are off
   std::vector<Eigen::MatrixXd> mount_covariance_;

@@ -52,18 +52,27 @@ RigLight::RigLight(const Session& session, LightPriors priors, TransportMatrix l
 Result<RigLight> RigLight::of(const Session& session, const LightPriors& priors, const ComputeOptions& options) {
   auto light = compute_transport(session, options);
   if (!light) return tl::unexpected(light.error());
-  auto sensitivity = mount_sensitivity(session.rig, *session.rays, *light, priors);
-  if (!sensitivity) return tl::unexpected(sensitivity.error());
   auto paint = paint_sensitivity(session.rig, session.scene, *light, options);
   if (!paint) return tl::unexpected(paint.error());
-  sensitivity->paint = *paint;
+  return of_light(session, priors, std::move(*light), std::move(*paint));
+}
+
+Result<RigLight> RigLight::with_priors(const LightPriors& priors) const {
+  return of_light(*session_, priors, light_, paint_);
+}
+
+Result<RigLight> RigLight::of_light(const Session& session, const LightPriors& priors, TransportMatrix light,
+                                    std::vector<Eigen::MatrixXd> paint) {
+  auto sensitivity = mount_sensitivity(session.rig, *session.rays, light, priors);
+  if (!sensitivity) return tl::unexpected(sensitivity.error());
+  sensitivity->paint = paint;
   const auto fixtures = static_cast<Index>(session.rig.fixtures.size());
   LightPriors with_levels = priors;
   if (priors.read_at.size() == 0) {
-    const std::vector<double> brightest = brightest_levels(session.rig, light->lux_per_level.leftCols(fixtures));
+    const std::vector<double> brightest = brightest_levels(session.rig, light.lux_per_level.leftCols(fixtures));
     with_levels.read_at = Eigen::Map<const VectorXd>(brightest.data(), fixtures).cwiseMax(kDimmest);
   }
-  return RigLight(session, std::move(with_levels), std::move(*light), std::move(*paint), std::move(*sensitivity));
+  return RigLight(session, std::move(with_levels), std::move(light), std::move(paint), std::move(*sensitivity));
 }
 
 Result<void> RigLight::learn(std::span<const LightReading> readings) {

@@ -32,6 +32,8 @@ class RigLight {
   /// the priors, lamps are taken to be read at their brightest_levels().
   [[nodiscard]] static Result<RigLight> of(const Session& session, const LightPriors& priors,
                                            const ComputeOptions& options);
+  /// The same light by other priors, before anything is learnt; nothing is traced.
+  [[nodiscard]] Result<RigLight> with_priors(const LightPriors& priors) const;
 
   /// Per fixture: the level at which it turned out to be read. Before anything is learnt.
   void read_at(const Eigen::VectorXd& level) { known_.read_at(level); }
@@ -58,6 +60,8 @@ class RigLight {
   /// The goals first among the queries.
   [[nodiscard]] Goals goals_under(const Eigen::VectorXd& level) const;
   [[nodiscard]] LightQuery asked_in_hand(std::size_t point, std::size_t fixture) const;
+  [[nodiscard]] static Result<RigLight> of_light(const Session& session, const LightPriors& priors,
+                                                 TransportMatrix light, std::vector<Eigen::MatrixXd> paint);
   RigLight(const Session& session, LightPriors priors, TransportMatrix light, std::vector<Eigen::MatrixXd> paint,
            LightSensitivity sensitivity);
 

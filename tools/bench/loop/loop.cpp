@@ -4,22 +4,22 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <memory>
 #include <numeric>
 #include <optional>
 #include <random>
 #include <span>
 
+#include "core/calibration/camera_instrument.h"
 #include "core/calibration/meter_run.h"
 #include "core/calibration/meter_timing.h"
 #include "core/calibration/rig_light.h"
-#include "core/calibration/seen_places.h"
 #include "core/output/dimming.h"
 #include "core/rig/rig_file.h"
 #include "core/tasks/scene_builder.h"
-#include "sim/devices/camera.h"
 #include "sim/world/world.h"
+#include "tools/bench/loop/loop_camera.h"
 #include "tools/bench/suites.h"
-#include "tools/luxrig/room_view.h"
 
 namespace luxrig {
 namespace {
@@ -116,11 +116,16 @@ struct Hand {
   Where where = Where::chosen;
 };
 
+/// How a camera's pictures are taken: with its lens and each kind of lamp as unknowns, or all by one factor.
+enum class Colour { by_kind, one_factor };
+
 struct Case {
   const char* method;
   bool meters;
   Hand hand;
   bool camera = false;
+  Colour colour = Colour::by_kind;
+  bool known_paint = false;  ///< the truth's reflectances are those of the file
 };
 
 constexpr Case kCases[] = {
@@ -131,43 +136,12 @@ constexpr Case kCases[] = {
     {"8 by hand", false, {8, Hand::Where::chosen}},
     {"meters, camera", true, {}, true},
     {"camera, 1 by hand", false, {1, Hand::Where::chosen}, true},
+    {"camera, 1 by hand, one factor", false, {1, Hand::Where::chosen}, true, Colour::one_factor},
+    {"meters, camera, known paint", true, {}, true, Colour::by_kind, true},
+    {"camera, 1 by hand, known paint", false, {1, Hand::Where::chosen}, true, Colour::by_kind, true},
 };
-
-/// What one camera sees of the rig.
-struct SeenRig {
-  PictureCamera camera;
-  std::vector<SeenPlace> places;
-  Session session;  ///< of the rig with a point at each place
-};
-
-constexpr int kPlaces = 120, kWidth_px = 640, kHeight_px = 400;
-constexpr int kPasses = 12;  // 25 pixels of a place: 300 samples
-constexpr double kBracket = 16, kFull = 0.95;
-constexpr double kFieldOfView_rad = 1.2;
-/// Of the factor between a picture and light, per material: paint, and the camera's scale.
-constexpr double kLogCamera = 0.2;
-/// Of a place's light by the camera, beside its noise: lens, and paint that is not the same all over.
-constexpr double kCameraError = 0.015, kDarkest_lx = 0.05;
-/// A place says nothing of a lamp that gives it less than this of its brightest.
-constexpr double kSeen = 0.02;
-
-Result<SeenRig> see(const Session& session) {
-  SeenRig seen;
-  std::vector<Joints> joints;
-  for (const Fixture& fixture : session.rig.fixtures) joints.push_back(fixture.joints);
-  const Camera view = automatic_camera(*session.rays, session.rig, joints, kWidth_px, kHeight_px, kFieldOfView_rad);
-  seen.camera.name = "bench";
-  seen.camera.position_world_m = view.eye_world_m;
-  seen.camera.aim_world_m = view.target_world_m;
-  seen.camera.vertical_fov_rad = view.vertical_fov_rad;
-  seen.camera.width_px = view.width_px;
-  seen.camera.height_px = view.height_px;
-  seen.places = seen_places(*session.rays, view, kPlaces);
-  auto with = session_of(with_places(session.rig, seen.places));
-  if (!with) return tl::unexpected(Fault{Cause::invalid, "", with.error().front().text(), {}});
-  seen.session = std::move(*with);
-  return seen;
-}
+/// Of a reflectance that was measured.
+constexpr double kKnownPaint = 0.02;
 
 /// A lamp that may not be lit has this level instead of none.
 constexpr double kDimmest = 0.01;
@@ -179,22 +153,14 @@ LightPriors priors_of(const Rig& rig, const std::vector<double>& used) {
   return priors;
 }
 
-LightPriors priors_with_camera(const Session& session, const std::vector<double>& used) {
-  LightPriors priors = priors_of(session.rig, used);
-  const Index instruments = priors.log_meter.size(), materials = static_cast<Index>(session.scene.materials.size());
-  priors.log_meter.conservativeResize(instruments + materials);
-  priors.log_meter.tail(materials).setConstant(kLogCamera);
-  return priors;
-}
-
 /// What is measured once of a simulated rig, for all cases.
 struct MeasuredRig {
   MeterRun run;
-  std::vector<double> used;                  ///< levels of use, as sent
-  VectorXd truth_lx;                         ///< of all lamps at those
-  MatrixXd alone_lx;                         ///< points × fixtures: of each alone at its level of use
-  double rig_seconds = 0;                    ///< that the run took
-  std::vector<std::vector<SeenLight>> seen;  ///< per fixture at its level of use: of each place
+  std::vector<double> used;  ///< levels of use, as sent
+  VectorXd truth_lx;         ///< of all lamps at those
+  MatrixXd alone_lx;         ///< points × fixtures: of each alone at its level of use
+  double rig_seconds = 0;    ///< that the run took
+  Photographed seen;         ///< each lamp at its level of use
 };
 
 std::vector<double> levels_of_use(std::vector<double> brightest) {
@@ -208,38 +174,22 @@ Result<MeasuredRig> measure_rig(sim::World& world, const Session& session, const
   const RayScene true_rays(sim::true_scene(session.scene, rig, deviations));
   Bench bench(world, rig);
   MeasuredRig measured{MeterRun(rig, brightest, stated_lux), levels_of_use(brightest), {}, {}, 0, {}};
+  Photographer camera(seen, session, world, true_rays, deviations);
   const auto read = bench.read(measured.run.plan(), levels_of_use(brightest));
   for (std::size_t k = 0; k < read.size(); ++k) measured.run.take(measured.run.plan()[k].level, read[k]);
   measured.rig_seconds = bench.seconds();
   std::vector<double> alone(rig.fixtures.size(), 0.0);
   const VectorXd dark_lx = bench.truth_lx(alone);
   measured.truth_lx = bench.truth_lx(measured.used) - dark_lx;
+  if (auto looked = camera.look(); !looked) return tl::unexpected(looked.error());
   measured.alone_lx.resize(measured.truth_lx.size(), static_cast<Index>(rig.fixtures.size()));
   for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
     alone[f] = measured.used[f];
     measured.alone_lx.col(static_cast<Index>(f)) = bench.truth_lx(alone) - dark_lx;
-    sim::Shot shot;
-    shot.seed = deviations.seed;
-    shot.number = f;
-    shot.passes = kPasses;
-    const auto light = sim::light_on_sensor(true_rays, rig, world.fixtures(), {world.levels(), world.joints()},
-                                            sim::draw_camera(rig, seen.camera, 0, sim::Deviations::none()), shot);
-    if (!light) return tl::unexpected(light.error());
-    const Picture picture = sim::exposed(*light, sim::Sensor{}, shot);
-    // Bracketed: where this exposure is full, the shorter one.
-    shot.underexposed = kBracket;
-    const Picture shorter = sim::exposed(*light, sim::Sensor{}, shot);
-    float full = 0;
-    for (const Vec3f& pixel : picture.luminance_cd_m2) full = std::max(full, pixel.maxCoeff());
-    Picture merged = picture;
-    for (std::size_t i = 0; i < merged.luminance_cd_m2.size(); ++i)
-      if (merged.luminance_cd_m2[i].maxCoeff() > kFull * full) merged.luminance_cd_m2[i] = shorter.luminance_cd_m2[i];
-    Picture dark = picture;
-    for (Vec3f& pixel : dark.luminance_cd_m2) pixel.setZero();
-    measured.seen.emplace_back();
-    for (const SeenPlace& place : seen.places) measured.seen.back().push_back(seen_light(merged, dark, place));
+    if (auto taken = camera.take(f); !taken) return tl::unexpected(taken.error());
     alone[f] = 0;
   }
+  measured.seen = camera.taken();
   return measured;
 }
 
@@ -262,23 +212,20 @@ VectorXd levels_read(const MeasuredRig& measured, const std::vector<double>& bri
 }
 
 /// What the camera saw, for a RigLight of the rig with its places.
-std::vector<LightReading> readings_of_camera(const Rig& rig, const MeasuredRig& measured, const SeenRig& seen,
-                                             const VectorXd& share) {
+std::vector<LightReading> readings_of_camera(const Rig& rig, const MeasuredRig& measured,
+                                             const CameraInstrument& camera, const VectorXd& share, Colour colour) {
   std::vector<LightReading> readings;
-  for (std::size_t f = 0; f < measured.seen.size(); ++f) {
-    const double level = share[static_cast<Index>(f)];
-    if (!(level > 0)) continue;
-    double brightest = 0;
-    for (const SeenLight& light : measured.seen[f]) brightest = std::max(brightest, light.lux);
-    for (std::size_t k = 0; k < seen.places.size(); ++k) {
-      const SeenLight& light = measured.seen[f][k];
-      if (light.lux < kSeen * brightest) continue;
-      LightReading reading;
-      reading.receiver = rig.points.size() + k;
-      reading.meter = meter_in_hand(rig) + 1 + seen.places[k].material;
-      reading.lux = light.lux;
-      reading.standard_error_lx = std::hypot(light.standard_error_lx, kCameraError * light.lux, kDarkest_lx);
-      reading.level = level * VectorXd::Unit(share.size(), static_cast<Index>(f));
+  for (std::size_t f = 0; f < measured.seen.of_lamp.size(); ++f) {
+    const auto j = static_cast<Index>(f);
+    if (!(share[j] > 0)) continue;
+    auto of_lamp = camera.readings(measured.seen.places, measured.seen.of_lamp[f], kCameraWidth_px, kCameraHeight_px,
+                                   rig.points.size(), share[j] * VectorXd::Unit(share.size(), j));
+    for (LightReading& reading : of_lamp) {
+      if (colour == Colour::one_factor) {
+        std::fill(reading.showing.of_lamp.begin(), reading.showing.of_lamp.end(), camera.response_to(0));
+        reading.showing.factors.clear();
+        reading.showing.stray.clear();
+      }
       readings.push_back(std::move(reading));
     }
   }
@@ -322,8 +269,11 @@ struct Errors {
   std::vector<double> share;         ///< of each goal's light, over all rigs
   std::vector<double> in_errors;     ///< the same over the stated standard error
   std::vector<double> worst_of_rig;  ///< per rig
+  CameraBudget budget;               ///< sums of the goals' shares
+  int budgets = 0;
 
-  void add(const Rig& rig, const VectorXd& truth_lx, const VectorXd& level, const RigLight& light) {
+  void add(const Rig& rig, const VectorXd& truth_lx, const VectorXd& level, const RigLight& light,
+           const CameraInstrument* camera) {
     double worst = 0;
     for (std::size_t p = 0; p < rig.points.size(); ++p) {
       if (!rig.points[p].goal_lx) continue;
@@ -332,8 +282,20 @@ struct Errors {
       share.push_back(std::abs(found.lux / truth - 1));
       in_errors.push_back(std::abs(found.lux - truth) / found.standard_error_lx);
       worst = std::max(worst, share.back());
+      if (camera) add(camera->shares_of(light.known().budget(p, level)));
     }
     worst_of_rig.push_back(worst);
+  }
+  void add(const CameraBudget& shares) {
+    for (const auto part :
+         {&CameraBudget::lens, &CameraBudget::stray, &CameraBudget::response, &CameraBudget::reflectance,
+          &CameraBudget::lamps, &CameraBudget::noise, &CameraBudget::other})
+      budget.*part += shares.*part;
+    ++budgets;
+  }
+  /// Of the goals' variance, on average; empty for a case without a camera.
+  [[nodiscard]] std::string of_variance(double CameraBudget::*part) const {
+    return budgets > 0 ? fmt::format("{:.2f}", budget.*part / budgets) : "";
   }
 };
 
@@ -347,6 +309,70 @@ double percentile(std::vector<double> values, double share) {
   const auto at = std::min(values.size() - 1, static_cast<std::size_t>(share * static_cast<double>(values.size())));
   std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(at), values.end());
   return values[at];
+}
+
+/// A rig as stated, for the cases without and with a camera, and for those who know its paint.
+struct Stated {
+  const Session& session;
+  std::unique_ptr<const SeenRig> seen;  ///< stays where it is: lights of it point there
+  std::vector<double> brightest, used;
+  std::optional<RigLight> meters, camera, camera_known_paint;
+  std::optional<CameraInstrument> instrument;  ///< of both the latter
+
+  [[nodiscard]] static Result<Stated> of(const Session& session, const ComputeOptions& compute) {
+    const auto traced = compute_transport(session, compute);
+    if (!traced) return tl::unexpected(traced.error());
+    auto seen = see(session);
+    if (!seen) return tl::unexpected(seen.error());
+    Stated stated{session, std::make_unique<const SeenRig>(std::move(*seen)), {}, {}, {}, {}, {}, {}};
+    const auto fixtures = static_cast<Index>(session.rig.fixtures.size());
+    stated.brightest = brightest_levels(session.rig, traced->lux_per_level.leftCols(fixtures));
+    stated.used = levels_of_use(stated.brightest);
+    auto light = RigLight::of(session, priors_of(session.rig, stated.used), compute);
+    if (!light) return tl::unexpected(light.error());
+    stated.meters = std::move(*light);
+    LightPriors priors = priors_of(session.rig, stated.used);
+    stated.instrument.emplace(session.rig, session.scene.materials.size(), priors);
+    auto with_camera = RigLight::of(stated.seen->session, priors, compute);
+    if (!with_camera) return tl::unexpected(with_camera.error());
+    priors.reflectance = kKnownPaint;
+    auto known_paint = with_camera->with_priors(priors);
+    if (!known_paint) return tl::unexpected(known_paint.error());
+    stated.camera = std::move(*with_camera);
+    stated.camera_known_paint = std::move(*known_paint);
+    return stated;
+  }
+};
+
+/// What a case knows of a rig after all its readings, and the levels that it takes its lamps to be at.
+struct Learnt {
+  RigLight light;
+  VectorXd share;
+};
+
+Result<Learnt> learn_case(const Stated& stated, const Case& how, const MeasuredRig& measured, std::uint64_t seed) {
+  const Rig& rig = stated.session.rig;
+  Learnt learnt{*(how.known_paint ? stated.camera_known_paint
+                  : how.camera    ? stated.camera
+                                  : stated.meters),
+                shares_of(rig, measured, how.meters)};
+  std::vector<LightReading> readings;
+  if (how.meters) {
+    readings = measured.run.readings();
+    learnt.light.read_at(levels_read(measured, stated.brightest));
+  }
+  if (how.camera) {
+    for (LightReading& reading : readings) reading.receiver += stated.seen->places.size();
+    const auto of_camera = readings_of_camera(rig, measured, *stated.instrument, learnt.share, how.colour);
+    readings.insert(readings.end(), of_camera.begin(), of_camera.end());
+  }
+  if (!readings.empty())
+    if (auto done = learnt.light.learn(readings); !done) return tl::unexpected(done.error());
+  if (auto done = measure_by_hand(rig, measured, how.hand, learnt.share, seed,
+                                  how.camera ? stated.seen->places.size() : 0, learnt.light);
+      !done)
+    return tl::unexpected(done.error());
+  return learnt;
 }
 
 }  // namespace
@@ -370,55 +396,38 @@ std::vector<BenchRow> bench_loop(const BenchOptions& options) {
   ComputeOptions compute;
   compute.max_error = kTransportError;
   compute.threads = options.threads;
-  const auto traced = compute_transport(*session, compute);
-  if (!traced) return failed(traced.error().detail);
-  const std::vector<double> brightest =
-      brightest_levels(session->rig, traced->lux_per_level.leftCols(static_cast<Index>(session->rig.fixtures.size())));
-  const std::vector<double> used = levels_of_use(brightest);
-  const auto stated = RigLight::of(*session, priors_of(session->rig, used), compute);
+  const auto stated = Stated::of(*session, compute);
   if (!stated) return failed(stated.error().detail);
-  const auto seen = see(*session);
-  if (!seen) return failed(seen.error().detail);
-  const auto stated_seen = RigLight::of(seen->session, priors_with_camera(seen->session, used), compute);
-  if (!stated_seen) return failed(stated_seen.error().detail);
-  std::fprintf(stderr, "the camera sees %zu places\n", seen->places.size());
+  std::fprintf(stderr, "the camera sees %zu places\n", stated->seen->places.size());
 
   std::vector<Errors> errors(std::size(kCases));
-  std::vector<double> seconds(std::size(kCases), 0.0);
+  std::vector<double> seconds(std::size(kCases), 0.0), stated_off_px, off_px;
   double rig_seconds = 0;
+  int camera_refused = 0;
   const int seeds = options.seeds.value_or(options.quick ? 2 : 20);
   for (int s = 0; s < seeds; ++s) {
-    std::fprintf(stderr, "\rrig %d of %d ", s + 1, seeds);
-    sim::Deviations real = sim::Deviations::real();
-    real.seed = static_cast<std::uint64_t>(options.first_seed + s);
-    auto world = sim::World::make(session->rig, real, kTruthError);
-    if (!world) return failed(world.error().detail);
-    const auto taken = measure_rig(**world, *session, real, brightest, stated->stated_lux(), *seen);
-    if (!taken) return failed(taken.error().detail);
-    const MeasuredRig& measured = *taken;
-    rig_seconds = measured.rig_seconds;
-    for (std::size_t c = 0; c < std::size(kCases); ++c) {
-      const auto started = std::chrono::steady_clock::now();
-      RigLight light = kCases[c].camera ? *stated_seen : *stated;
-      const VectorXd share = shares_of(session->rig, measured, kCases[c].meters);
-      std::vector<LightReading> readings;
-      if (kCases[c].meters) {
-        readings = measured.run.readings();
-        light.read_at(levels_read(measured, brightest));
+    for (const bool known_paint : {false, true}) {
+      std::fprintf(stderr, "\rrig %d of %d ", s + 1, seeds);
+      sim::Deviations real = sim::Deviations::real();
+      real.seed = static_cast<std::uint64_t>(options.first_seed + s);
+      if (known_paint) real.reflectance_spread = 0;
+      auto world = sim::World::make(session->rig, real, kTruthError);
+      if (!world) return failed(world.error().detail);
+      const auto measured = measure_rig(**world, *session, real, stated->brightest, stated->meters->stated_lux(), *stated->seen);
+      if (!measured) return failed(measured.error().detail);
+      rig_seconds = measured->rig_seconds;
+      stated_off_px.push_back(measured->seen.stated_off_px.value_or(NAN));
+      if (measured->seen.off_px) off_px.push_back(*measured->seen.off_px);
+      camera_refused += measured->seen.refused.empty() ? 0 : 1;
+      for (std::size_t c = 0; c < std::size(kCases); ++c) {
+        if (kCases[c].known_paint != known_paint) continue;
+        const auto started = std::chrono::steady_clock::now();
+        const auto learnt = learn_case(*stated, kCases[c], *measured, real.seed);
+        if (!learnt) return failed(learnt.error().detail);
+        seconds[c] += std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count() / seeds;
+        errors[c].add(session->rig, measured->truth_lx, learnt->share, learnt->light,
+                      kCases[c].camera ? &*stated->instrument : nullptr);
       }
-      if (kCases[c].camera) {
-        for (LightReading& reading : readings) reading.receiver += seen->places.size();
-        const auto of_camera = readings_of_camera(session->rig, measured, *seen, share);
-        readings.insert(readings.end(), of_camera.begin(), of_camera.end());
-      }
-      if (!readings.empty())
-        if (auto learnt = light.learn(readings); !learnt) return failed(learnt.error().detail);
-      if (auto learnt = measure_by_hand(session->rig, measured, kCases[c].hand, share, real.seed,
-                                        kCases[c].camera ? seen->places.size() : 0, light);
-          !learnt)
-        return failed(learnt.error().detail);
-      seconds[c] += std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count() / seeds;
-      errors[c].add(session->rig, measured.truth_lx, share, light);
     }
   }
   std::fprintf(stderr, "\n");
@@ -435,7 +444,16 @@ std::vector<BenchRow> bench_loop(const BenchOptions& options) {
                    {"worst", fmt::format("{:.3f}", percentile(errors[c].worst_of_rig, 1))},
                    {"rigs_within_8", fmt::format("{:.2f}", share_within(errors[c].worst_of_rig, 0.08))},
                    {"rig_seconds", kCases[c].meters ? fmt::format("{:.0f}", rig_seconds) : ""},
-                   {"in_2_errors", fmt::format("{:.3f}", share_within(errors[c].in_errors, 2))}};
+                   {"in_2_errors", fmt::format("{:.3f}", share_within(errors[c].in_errors, 2))},
+                   {"camera_px", kCases[c].camera ? fmt::format("{:.2f}", percentile(off_px, 0.5)) : ""},
+                   {"stated_px", kCases[c].camera ? fmt::format("{:.2f}", percentile(stated_off_px, 0.5)) : ""},
+                   {"not_found", kCases[c].camera ? fmt::format("{}", camera_refused) : ""},
+                   {"of_lens", errors[c].of_variance(&CameraBudget::lens)},
+                   {"of_stray", errors[c].of_variance(&CameraBudget::stray)},
+                   {"of_response", errors[c].of_variance(&CameraBudget::response)},
+                   {"of_reflectance", errors[c].of_variance(&CameraBudget::reflectance)},
+                   {"of_lamps", errors[c].of_variance(&CameraBudget::lamps)},
+                   {"of_noise", errors[c].of_variance(&CameraBudget::noise)}};
     rows.push_back(std::move(row));
   }
   return rows;
