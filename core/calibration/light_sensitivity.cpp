@@ -19,6 +19,9 @@ using Eigen::VectorXd;
 /// Share by which a material's reflectance is raised: about what it is not known by, so that noise counts little.
 constexpr double kPaintStep = 0.1;
 constexpr double kMostReflectance = 0.95;
+/// Of reflected light, so many times as much is left unexplained as of direct light: its model stands on all that is in
+/// the room, and on paint that is one colour for all of a material.
+constexpr double kReflectedDoubt = 3;
 
 /// The lamp as it is, at each of the displacements of one fixture, one after the other:
 /// as found; ± each unknown; both signs of each pair of unknowns.
@@ -107,6 +110,8 @@ Result<LightSensitivity> mount_sensitivity(const Rig& rig, const RayScene& rays,
       sensitivity.lux.col(j) =
           (sensitivity.lux.col(j) - light.direct_lux_per_level.col(j)).cwiseMax(0) + lux->lux_per_level.col(0);
   }
+  const MatrixXd reflected = (light.lux_per_level - light.direct_lux_per_level).leftCols(fixtures).cwiseMax(0);
+  sensitivity.doubtful = sensitivity.lux + (kReflectedDoubt - 1) * reflected;
   return sensitivity;
 }
 

@@ -64,6 +64,9 @@ void LightUnknowns::check(const LightSensitivity& sensitivity) const {
   LUXRIG_CHECK(sensitivity.lux.rows() == light_.lux.rows() && sensitivity.lux.cols() == light_.lux.cols() &&
                    sensitivity.paint.size() == light_.paint.size(),
                "another rig's light");
+  LUXRIG_CHECK(sensitivity.doubtful.size() == 0 || (sensitivity.doubtful.rows() == sensitivity.lux.rows() &&
+                                                    sensitivity.doubtful.cols() == sensitivity.lux.cols()),
+               "another rig's doubtful light");
   LUXRIG_CHECK(sensitivity.place.empty() || static_cast<Index>(sensitivity.place.size()) == light_.lux.rows(),
                "{} places of {} receivers", sensitivity.place.size(), light_.lux.rows());
 }
@@ -134,11 +137,12 @@ double LightUnknowns::light_and_slope(const LightQuery& query, double fixed_lx, 
 
 double LightUnknowns::rest_covariance(const LightQuery& a, const LightQuery& b) const {
   if (place_of(a.receiver) != place_of(b.receiver)) return 0;
+  const MatrixXd& lux = light_.doubtful.size() > 0 ? light_.doubtful : light_.lux;
   double sum_lx2 = 0;
   for (Index j = 0; j < fixtures(); ++j)
     if (a.level[j] != 0 && b.level[j] != 0)
-      sum_lx2 += light_.lux(static_cast<Index>(a.receiver), j) * light_.lux(static_cast<Index>(b.receiver), j) *
-                 a.level[j] * b.level[j] * lamp_share(a.showing, j) * lamp_share(b.showing, j);
+      sum_lx2 += lux(static_cast<Index>(a.receiver), j) * lux(static_cast<Index>(b.receiver), j) * a.level[j] *
+                 b.level[j] * lamp_share(a.showing, j) * lamp_share(b.showing, j);
   return sum_lx2 * shown_share(a.showing) * shown_share(b.showing) * priors_.rest_share * priors_.rest_share;
 }
 

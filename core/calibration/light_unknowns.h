@@ -37,6 +37,8 @@ struct LightSensitivity {
   std::vector<Eigen::MatrixXd> bend{};
   /// P: per material, receivers × fixtures: change of lux with a relative change of its reflectance of 1.
   std::vector<Eigen::MatrixXd> paint{};
+  /// Receivers × fixtures: LightPriors::rest_share of this light is what nothing explains; empty = lux.
+  Eigen::MatrixXd doubtful{};
   /// Per receiver: receivers with the same number are at the same place, such as a luxmeter at a point. Empty = each its
   /// own.
   std::vector<std::size_t> place{};
