@@ -60,7 +60,7 @@ Json pair_of(double value, double error) { return Json::array({value, error}); }
 }  // namespace
 
 CalibrationReport report_of(const Session& session, const RigLight& before, const RigLight& now, Calibration found,
-                            double level) {
+                            double level, std::span<const std::size_t> no_points) {
   const Rig& rig = session.rig;
   CalibrationReport report;
   report.level = level;
@@ -76,7 +76,7 @@ CalibrationReport report_of(const Session& session, const RigLight& before, cons
                                reading.lux - in_errors * reading.standard_error_lx, in_errors});
   }
   tell_what_is_missing(found, report);
-  for (const std::size_t p : now.places_to_measure(of_use, kMostToSettle, {}))
+  for (const std::size_t p : now.places_to_measure(of_use, kMostToSettle, no_points))
     report.to_settle.push_back(rig.points[p].name);
   report.found = std::move(found);
   return report;

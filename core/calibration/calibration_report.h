@@ -2,6 +2,7 @@
 /// What a calibration found, for a person who wants to know whether to believe it: what was wrong before, what is known
 /// now, how well the readings agree, what could not be found out, and which measurement would settle it.
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -35,9 +36,10 @@ struct CalibrationReport {
   std::vector<std::string> to_settle;  ///< points where a luxmeter would settle most of the rest, best first
 };
 
-/// before, now: the light before and after it was measured. level: share of full light of every lamp at the goals.
+/// before, now: the light before and after it was measured, of this session. level: share of full light of every lamp at
+/// the goals. no_points: points that no luxmeter can be held at, such as a camera's places.
 [[nodiscard]] CalibrationReport report_of(const Session& session, const RigLight& before, const RigLight& now,
-                                          Calibration found, double level);
+                                          Calibration found, double level, std::span<const std::size_t> no_points);
 
 /// JSON, "luxrig_calibration_report": 1. The same value gives the same bytes.
 [[nodiscard]] std::string to_json(const CalibrationReport& report);

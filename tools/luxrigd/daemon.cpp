@@ -316,8 +316,8 @@ HttpHandlers Daemon::handlers() {
       last = published_;
     }
     if (!last) return "{}";
-    return status_json(
-        {last->session->rig, last->show, last->devices, last->output, options_.simulated, started_, last->at});
+    return status_json({last->session->rig, last->show, last->devices, last->output, options_.simulated, started_,
+                        last->at, options_.sim_control});
   };
   handlers.universes = [this] { return universes_json(); };
   handlers.room_json = [this] {

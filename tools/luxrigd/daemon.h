@@ -37,6 +37,7 @@ struct Resumed {
 
 struct DaemonOptions {
   bool simulated = false;
+  std::optional<Redirect> sim_control{};              ///< of the simulated rig: where it gives pictures
   std::map<std::string, Redirect> redirects;          ///< by bus name; empty for the real devices
   std::optional<std::filesystem::path> state_folder;  ///< none = nothing is remembered
   bool guarded = false;  ///< a guardian takes the rig to its safe look when this process dies; needs a state folder

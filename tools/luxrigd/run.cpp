@@ -279,6 +279,7 @@ int run_rig(const RunArguments& arguments) {
 
   // 3. The daemon.
   if (ports) options.redirects = ports->buses;
+  if (ports) options.sim_control = ports->control;
   options.simulated = ports.has_value();
   options.http_port = arguments.http_port.value_or(rig.daemon.http_port);
   // No guardian for our own simulator: it would die with us.

@@ -75,6 +75,66 @@ TEST(CalibrateOverTheWire, TheNextRunLightsByWhatWasMeasuredAndAStopLeavesNothin
   EXPECT_NE(rig.daemon().output().find("as calibrated"), std::string::npos) << rig.daemon().output();
 }
 
+/// The room with a wide camera that sees enough of it, and two boxes more on its walls.
+void give_eyes(const std::filesystem::path& rig_file) {
+  std::string text = text_of(rig_file);
+  const auto replace = [&](const std::string& what, const std::string& by) {
+    const auto at = text.find(what);
+    ASSERT_NE(at, std::string::npos) << what;
+    text.replace(at, what.size(), by);
+  };
+  replace("position_m = [1.7, -1.7, 1.6]\naim = \"plinth-top\"",
+          "position_m = [2.0, -2.2, 1.7]\naim_m = [-0.6, 1.2, 1.0]");
+  replace("fov_deg = 60\nwidth_px = 96\nheight_px = 64", "fov_deg = 70\nwidth_px = 320\nheight_px = 200");
+  replace("[[luminaire]]",
+          "[[scene.object]]\nname = \"picture\"\nbox_m = [1.2, 0.05, 0.8]\nposition_m = [-1.2, 2.45, 1.2]\nreflectance "
+          "= 0.3\n\n"
+          "[[scene.object]]\nname = \"chest\"\nbox_m = [0.6, 0.9, 0.7]\nposition_m = [-2.2, 0.4, 0.0]\nreflectance = "
+          "0.25\n\n"
+          "[[luminaire]]");
+  std::ofstream(rig_file) << text;
+}
+
+TEST(CalibrateOverTheWire, ByACameraThatHangsAskewItFindsTheCameraAndEachLamp) {
+  const Folder folder;
+  std::filesystem::copy(source("tests/rigs/room"), folder / "room", std::filesystem::copy_options::recursive);
+  give_eyes(folder / "room" / "rig.toml");
+  const std::string path = (folder / "room").string();
+  LiveRig rig(path, {},
+              {"--deviations",
+               "mild,camera_angle_rad=0.017,camera_position_m=0.03,camera_vignetting=0.3,camera_flare=0.02,"
+               "camera_log_response=0.4"});
+  ASSERT_TRUE(rig.wait_phase("holding", 90s)) << rig.daemon().output();
+  std::vector<std::string> words = calibrate(path, rig.port());
+  for (const char* word : {"--camera", "back-door"}) words.emplace_back(word);
+  const Ran unknown = run(words);
+  EXPECT_NE(unknown.code, 0);
+  EXPECT_NE(unknown.output.find("did you mean \"door\"?"), std::string::npos) << unknown.output;
+
+  words.back() = "door";
+  words.emplace_back("--meters");
+  const Ran measured = run(words, 280s);
+  ASSERT_EQ(measured.code, 0) << measured.output;
+  std::smatch off_px;
+  ASSERT_TRUE(std::regex_search(measured.output, off_px,
+                                std::regex("([0-9.]+) px off where the rig file has it; where it is now found to be, "
+                                           "([0-9.]+) px")))
+      << measured.output;
+  EXPECT_GT(std::stod(off_px[1]), 1);
+  EXPECT_LE(std::stod(off_px[2]), 0.5);
+  EXPECT_NE(measured.output.find("What is left of its variance: "), std::string::npos) << measured.output;
+  const json calibration = json::parse(text_of(folder / "room" / "calibration.json"), nullptr, false);
+  ASSERT_TRUE(calibration.is_object());
+  double chi_squared = 0;
+  const json truth = rig.truth();
+  for (const json& lamp : truth["fixtures"]) {
+    const json& output = calibration["fixtures"][lamp["name"].get<std::string>()]["output"];
+    chi_squared += squared((output[0].get<double>() - lamp["output"].get<double>()) / output[1].get<double>());
+    EXPECT_LT(output[1].get<double>(), 0.1) << lamp["name"];
+  }
+  EXPECT_LT(chi_squared, 3 * squared(3.5)) << measured.output;
+}
+
 /// A person who reads the true light wherever the program asks to hold the meter.
 class Person {
  public:

@@ -25,8 +25,8 @@ inline double level_of(const json& status, const std::string& fixture) {
 
 class LiveRig {
  public:
-  explicit LiveRig(std::string rig, std::vector<std::string> options = {})
-      : rig_(std::move(rig)), options_(std::move(options)) {
+  explicit LiveRig(std::string rig, std::vector<std::string> options = {}, std::vector<std::string> sim_options = {})
+      : rig_(std::move(rig)), options_(std::move(options)), sim_options_(std::move(sim_options)) {
     start_sim();
     start_daemon();
   }
@@ -68,9 +68,10 @@ class LiveRig {
   }
 
   void start_sim() {
-    sim_ = std::make_unique<Process>(std::vector<std::string>{program("luxrig-sim"), rig_, "--seed", "3",
-                                                              "--ports-file", ports().string(), "--max-error", "0.02"},
-                                     folder_ / "sim.log");
+    std::vector<std::string> words = {program("luxrig-sim"), rig_,          "--seed", "3", "--ports-file",
+                                      ports().string(),      "--max-error", "0.02"};
+    words.insert(words.end(), sim_options_.begin(), sim_options_.end());
+    sim_ = std::make_unique<Process>(std::move(words), folder_ / "sim.log");
     ASSERT_TRUE(wait_for([&] { return sim_->output().find("ready") != std::string::npos; }, 60s)) << sim_->output();
   }
   void kill_sim() { sim_.reset(); }
@@ -144,7 +145,8 @@ class LiveRig {
 
   Folder folder_;
   std::string rig_;
-  std::vector<std::string> options_;  ///< of the daemon
+  std::vector<std::string> options_;      ///< of the daemon
+  std::vector<std::string> sim_options_;  ///< of the simulated rig
   std::unique_ptr<Process> sim_, daemon_;
   int port_ = 0;
   json last_;

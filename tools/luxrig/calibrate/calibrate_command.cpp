@@ -15,6 +15,7 @@
 #include "core/calibration/rig_light.h"
 #include "core/output/dimming.h"
 #include "tools/command_line/installed.h"
+#include "tools/luxrig/calibrate/by_camera.h"
 #include "tools/luxrig/calibrate/daemon_rig.h"
 #include "tools/luxrig/calibrate/hand_meter.h"
 #include "tools/luxrig/commands.h"
@@ -32,8 +33,9 @@ struct CalibrateArguments {
   std::filesystem::path rig;
   ClientArguments client;
   ComputeOptions compute;
-  bool meters = false, hand = false;  ///< neither = meters
+  bool meters = false, hand = false;  ///< neither, and no camera = meters
   std::string hours = "closed";
+  std::optional<std::string> camera;                ///< name
   std::optional<std::filesystem::path> meter_file;  ///< of the meter in the hand
   std::optional<std::filesystem::path> file;        ///< none = calibration.json beside the rig file
 };
@@ -78,7 +80,13 @@ struct Measuring {
   HandLevels levels;
   std::vector<LampCurve> curves;  ///< per fixture
   std::stop_token stop;
+  const CameraView* camera =
+      nullptr;       ///< if one is used: its places are points of `light`, but none to hold a meter at
   bool any = false;  ///< something is measured
+
+  [[nodiscard]] std::vector<std::size_t> no_points() const {
+    return camera ? camera->points() : std::vector<std::size_t>{};
+  }
 };
 
 /// All lamps at once, so that no limit is exceeded.
@@ -128,7 +136,17 @@ Result<void> by_hanging_meters(Measuring& measuring) {
   for (std::size_t k = 0; k < read->size(); ++k) run.take((*read)[k].sent[run.plan()[k].fixture], (*read)[k].readings);
   measuring.curves = run.curves();
   measuring.any = true;
-  return measuring.light.learn(run.readings());
+  std::vector<LightReading> readings = run.readings();
+  for (LightReading& reading : readings) reading.receiver += measuring.no_points().size();
+  return measuring.light.learn(readings);
+}
+
+Result<void> by_camera(Measuring& measuring) {
+  const auto readings = measure_by_camera(measuring.session, *measuring.camera, measuring.daemon,
+                                          measuring.levels.brightest, measuring.curves, measuring.stop);
+  if (!readings) return tl::unexpected(readings.error());
+  measuring.any = true;
+  return measuring.light.learn(*readings);
 }
 
 /// One place; false = the person is done.
@@ -163,7 +181,7 @@ Result<void> by_hand(Measuring& measuring, HandMeter meter) {
   const Rig& rig = measuring.session.rig;
   fmt::print("Type each reading in lux{}. s skips a lamp, n goes to another place, q ends.\n\n",
              meter.has_file() ? ", or Enter alone to take it from the meter's file" : "");
-  std::vector<std::size_t> been;
+  std::vector<std::size_t> been = measuring.no_points();
   while (const auto place = next_hand_place(rig, measuring.light, measuring.levels, measuring.curves, been)) {
     const Point& point = rig.points[place->point];
     fmt::print("Hold the luxmeter at \"{}\": x {:.2f} m, y {:.2f} m, {:.2f} m high, {}.\n", point.name,
@@ -201,6 +219,9 @@ void print_report(const Measuring& measuring, const GoalError& before, const Cal
   }
   fmt::print("{}\nThe light at {} goals was known to {}. Now it is known to {}.\n", lamps.text(), before.goals,
              known_words(before), known_words(measuring.light.error_of_goals(measuring.levels.use)));
+  if (measuring.camera)
+    fmt::print("What is left of its variance: {}.\n",
+               budget_words(rig, *measuring.camera, measuring.light, measuring.levels.use));
   if (told.to_settle.empty()) return;
   std::string names;
   for (const std::string& point : told.to_settle) names += (names.empty() ? "\"" : ", \"") + point + "\"";
@@ -213,15 +234,15 @@ int run_calibrate(const CalibrateArguments& arguments) {
   const auto session = open_stated_session(arguments.rig);
   if (!session) return report(session.error());
   const Rig& rig = session->rig;
-  const bool meters = arguments.meters || !arguments.hand;
+  const bool meters = arguments.meters || (!arguments.hand && !arguments.camera);
   if (meters && rig.luxmeters.empty()) {
     fmt::print(stderr,
                "luxrig: the rig has no [[luxmeter]] to measure with; --hand asks for readings of one in your hand\n");
     return kExitBadInput;
   }
   const bool open = arguments.hours == "open";
-  if (open && arguments.hand) {
-    fmt::print(stderr, "luxrig: by hand, lamps go on alone: that takes --hours closed\n");
+  if (open && (arguments.hand || arguments.camera)) {
+    fmt::print(stderr, "luxrig: by hand and by camera, lamps go on alone: that takes --hours closed\n");
     return kExitBadInput;
   }
   auto daemon = DaemonRig::of(arguments.client, rig);
@@ -231,7 +252,14 @@ int run_calibrate(const CalibrateArguments& arguments) {
   compute.watch.stop = stop;
   TerminalWatch terminal;
   compute.watch.tell = terminal.tell();
-  auto light = RigLight::of(*session, usual_priors(rig), compute);
+  LightPriors priors = usual_priors(rig);
+  std::optional<CameraView> view;
+  if (arguments.camera) {
+    auto seen = camera_view(*session, *arguments.camera, priors);
+    if (!seen) return report(seen.error());
+    view = std::move(*seen);
+  }
+  auto light = RigLight::of(view ? *view->session : *session, priors, compute);
   if (!light) return report(light.error());
   Measuring measuring{*session,
                       *daemon,
@@ -240,11 +268,14 @@ int run_calibrate(const CalibrateArguments& arguments) {
                        brightest_levels(rig, light->stated_lux())},
                       std::vector<LampCurve>(rig.fixtures.size()),
                       stop,
+                      view ? &*view : nullptr,
                       false};
   const RigLight before = *light;
   if (meters)
     if (auto measured = open ? by_meters_in_open_hours(measuring) : by_hanging_meters(measuring); !measured)
       return report(measured.error());
+  if (view)
+    if (auto measured = by_camera(measuring); !measured) return report(measured.error());
   if (arguments.hand)
     if (auto measured = by_hand(measuring, HandMeter(arguments.meter_file)); !measured) return report(measured.error());
 
@@ -256,8 +287,10 @@ int run_calibrate(const CalibrateArguments& arguments) {
   if (auto kept = keep_old(file); !kept) return report(kept.error());
   Calibration found = calibration_of(*session, *light, measuring.curves, utc_now());
   if (auto written = write_file(file, to_json(found)); !written) return report(written.error());
-  CalibrationReport told = report_of(*session, before, *light, std::move(found), kLevelOfUse);
+  CalibrationReport told =
+      report_of(view ? *view->session : *session, before, *light, std::move(found), kLevelOfUse, measuring.no_points());
   if (meters) told.by.emplace_back("luxmeters that hang");
+  if (view) told.by.emplace_back("camera \"" + *arguments.camera + "\"");
   if (arguments.hand) told.by.emplace_back("a luxmeter in the hand");
   const auto page = beside(file, "-report.html");
   for (const auto& [name, text] : {std::pair{page, to_html(told)}, {beside(file, "-report.json"), to_json(told)}})
@@ -277,6 +310,10 @@ Action declare_calibrate(CLI::App& command) {
   command.add_flag("--meters", calibrate->meters, "by the luxmeters that hang (default without --hand)");
   command.add_flag("--hand", calibrate->hand,
                    "by a luxmeter in your hand: it says where to hold it, you type readings");
+  command
+      .add_option("--camera", calibrate->camera,
+                  "by this [[camera]] of the rig, with at least one reading of a luxmeter")
+      ->type_name("NAME");
   command.add_option("--meter-file", calibrate->meter_file,
                      "with --hand: file that the meter's program writes; Enter alone takes its last reading");
   command

@@ -80,6 +80,9 @@ Result<DaemonRig> DaemonRig::of(const ClientArguments& client, const Rig& rig) {
   if (flag_of(*status, "blackout"))
     return tl::unexpected(fault(Cause::invalid, "there is a blackout; lift it first: luxrig blackout off"));
   connected.held_before_ = list_of(*status, "overrides");
+  if (const auto control = status->find("sim_control"); control != status->end() && control->is_object())
+    connected.sim_control_ =
+        HttpPeer{text_of(*control, "host"), static_cast<int>(number_of(*control, "port").value_or(0)), {}, {}};
   // A calibrated daemon's levels are shares of true light. What is measured is over the rig file.
   auto in_use = with_calibration(rig);
   if (!in_use) return tl::unexpected(fault(Cause::invalid, in_use.error().front().text()));

@@ -37,6 +37,8 @@ class DaemonRig {
   /// Holds the same levels for longer. Call it every kHoldAgain while a person is waited for.
   [[nodiscard]] Result<void> hold_again() const { return hold(held_); }
   static constexpr std::chrono::seconds kHoldAgain{15};
+  /// Where the daemon's simulated rig gives pictures; none = its rig is real.
+  [[nodiscard]] const std::optional<HttpPeer>& sim_control() const { return sim_control_; }
 
   struct Read {
     std::vector<double> sent;                            ///< per fixture
@@ -72,6 +74,7 @@ class DaemonRig {
   nlohmann::json held_before_ = nlohmann::json::array();  ///< "overrides" of the status
   std::vector<double> held_{};
   std::vector<std::vector<TimedLux>> samples_{};  ///< per luxmeter
+  std::optional<HttpPeer> sim_control_{};
 };
 
 }  // namespace luxrig

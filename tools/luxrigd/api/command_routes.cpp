@@ -24,8 +24,8 @@ std::optional<std::vector<std::string>> names_in(const nlohmann::json& body, con
   return names;
 }
 
-HttpResponse dumped_answer(const nlohmann::json& json) {
-  return json_answer(json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+HttpResponse dumped_answer(const nlohmann::json& answer) {
+  return json_answer(answer.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
 HttpResponse fault_answer(const Fault& fault) {

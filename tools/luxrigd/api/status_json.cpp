@@ -124,6 +124,7 @@ std::string status_json(const StatusInput& input) {
               {"round", show.round},
               {"rounds", rig.control.rounds},
               {"converged", show.converged}};
+  if (input.sim_control) out["sim_control"] = {{"host", input.sim_control->host}, {"port", input.sim_control->port}};
   if (!rig.calibrated.empty()) out["calibrated"] = rig.calibrated;
   put_counts(out, show, rig.control.goal_tolerance);
   json& fixtures = out["fixtures"] = json::array();

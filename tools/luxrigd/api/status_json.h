@@ -25,6 +25,7 @@ struct StatusInput {
   bool simulated = false;
   Time started{};
   Time now{};
+  std::optional<Redirect> sim_control{};
 };
 
 [[nodiscard]] std::string status_json(const StatusInput& input);

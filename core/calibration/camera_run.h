@@ -1,0 +1,64 @@
+#pragma once
+/// Lamps one after the other before a camera: which light to photograph next, and what follows from the pictures. It
+/// neither lights nor photographs anything itself.
+
+#include <Eigen/Core>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/calibration/camera_instrument.h"
+#include "core/calibration/camera_pose.h"
+#include "core/calibration/lamp_steps.h"
+#include "core/calibration/seen_places.h"
+#include "core/rig/rig.h"
+#include "core/scene/ray_scene.h"
+
+namespace luxrig {
+
+class CameraRun {
+ public:
+  /// All arguments but the last two outlive it. rays, stated, places: as in the rig file. brightest: brightest_levels();
+  /// lamps at 0 are not measured. curves: per fixture; those that are empty are read from pictures at a few levels.
+  CameraRun(const Rig& rig, const RayScene& rays, const Camera& stated, std::span<const SeenPlace> places,
+            std::span<const double> brightest, std::vector<LampCurve> curves);
+
+  /// Levels of all fixtures that are to be photographed now; none = all is. First most of the room at once, by which the
+  /// camera is found; then the dark; then each lamp alone.
+  [[nodiscard]] std::optional<std::vector<double>> next() const;
+  [[nodiscard]] std::string words_of_next() const;
+  [[nodiscard]] std::size_t steps() const { return 1 + plan_.size(); }
+  [[nodiscard]] std::size_t done() const { return taken_.size() + (found_ ? 1 : 0); }
+  /// The picture under `next()`, of merged exposures. sent: levels of all fixtures, as they were. Refused, in words, if it
+  /// does not tell where the camera is.
+  [[nodiscard]] Result<void> take(std::span<const double> sent, const Picture& picture);
+
+  /// After the first picture.
+  [[nodiscard]] const std::optional<FoundCamera>& found() const { return found_; }
+  /// Call these when all is measured. first_receiver: of the first place.
+  [[nodiscard]] const std::vector<LampCurve>& curves() const { return curves_; }
+  [[nodiscard]] std::vector<LightReading> readings(const CameraInstrument& camera, std::size_t first_receiver) const;
+
+ private:
+  struct Taken {
+    double level = 0;  ///< of the step's fixture, as sent
+    std::vector<std::optional<SeenLight>> light;
+  };
+  [[nodiscard]] bool first_of_lamp(std::size_t step) const;
+  [[nodiscard]] LampCurve curve_from(std::size_t first) const;
+
+  const Rig* rig_;
+  const RayScene* rays_;
+  Camera stated_;
+  std::span<const SeenPlace> stated_places_;
+  std::vector<double> brightest_;
+  std::vector<LampStep> plan_;
+  std::optional<FoundCamera> found_;
+  std::vector<std::optional<SeenPlace>> places_;
+  Picture dark_;
+  std::vector<Taken> taken_;
+  std::vector<LampCurve> curves_;
+};
+
+}  // namespace luxrig
