@@ -28,6 +28,7 @@ constexpr Suite kSuites[] = {
     {"loop", "a rig whose truth is not its file's: calibrated, then held", bench_loop},
     {"hold", "a held show: faults that no device reports, quiet hours, lamps that light each other's meters",
      bench_hold},
+    {"heads", "pan-tilt heads that hang otherwise than stated, calibrated by a camera", bench_heads},
     {"faults", "faults of every bus by the hundred: what the light did, when it was said and over", bench_faults},
 };
 

@@ -35,6 +35,10 @@ namespace luxrig {
 /// Faults that are named by readings alone, false alarms, and corrections beside PI loops.
 [[nodiscard]] std::vector<BenchRow> bench_hold(const BenchOptions& options);
 
+/// Pan-tilt heads that hang and turn otherwise than stated, calibrated by a camera. error: 95th percentile, in degrees,
+/// of where the beam falls. seconds: processor time of the estimate, a head.
+[[nodiscard]] std::vector<BenchRow> bench_heads(const BenchOptions& options);
+
 /// Non-negative least squares, cold, warm and limited. error: worst KKT residual. seconds: processor time.
 [[nodiscard]] std::vector<BenchRow> bench_nnls(const BenchOptions& options);
 
