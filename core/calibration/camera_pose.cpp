@@ -29,7 +29,7 @@ const Change kPrior = (Change() << 0.05, 0.05, 0.05, 0.03, 0.03, 0.03, 0.03, 0.0
 const Change kStep = (Change() << 1e-3, 1e-3, 1e-3, 1e-4, 1e-4, 1e-4, 1e-4, 1e-4).finished();
 
 constexpr std::size_t kLeastEdges = 60;
-constexpr std::size_t kHeldOut = 4;  // one of so many
+constexpr std::size_t kHeldOutEvery = 4;  // one of so many
 /// Distances within which an edge is looked for, one round after the other [px].
 constexpr double kReach_px[] = {8, 8, 6, 6, 4, 4, 4, 3, 3, 3, 2, 2, 2, 2, 2, 2};
 constexpr double kTestReach_px = 6;
@@ -128,8 +128,8 @@ std::optional<Vector2d> shown(const Camera& camera, const SceneEdge& edge) {
 }
 
 /// How far along its normal from where it is shown an edge is seen; none = the picture shows no clear one.
-std::optional<double> seen_at(const Gradient& gradient, const Vector2d& shown_px, const SceneEdge& edge,
-                              double reach_px) {
+std::optional<double> edge_seen_at(const Gradient& gradient, const Vector2d& shown_px, const SceneEdge& edge,
+                                   double reach_px) {
   constexpr double kApart_px = 0.5, kFarther = 0.5;
   const int steps = static_cast<int>(reach_px / kApart_px);
   const auto change = [&](int k) { return gradient.across(shown_px + k * kApart_px * edge.normal_px, edge.normal_px); };
@@ -197,17 +197,17 @@ class Fit {
   Fit(const Gradient& coarse, const Gradient& gradient, const Camera& stated, std::span<const SceneEdge> edges)
       : gradient_(gradient), stated_(stated), edges_(edges), by_(best_turn(coarse, stated, edges)) {}
 
-  /// Of edges with number % kHeldOut == 0, or the others.
+  /// Of edges with number % kHeldOutEvery == 0, or the others.
   [[nodiscard]] std::vector<Seen> seen(const Change& by, bool held_out, double reach_px) const {
     const Camera camera = changed(stated_, by);
     std::vector<Camera> around;
     for (Index k = 0; k < kUnknowns; ++k) around.push_back(changed(stated_, by + kStep[k] * Change::Unit(k)));
     std::vector<Seen> seen;
     for (std::size_t e = 0; e < edges_.size(); ++e) {
-      if ((e % kHeldOut == 0) != held_out) continue;
+      if ((e % kHeldOutEvery == 0) != held_out) continue;
       const auto place = shown(camera, edges_[e]);
       if (!place) continue;
-      const auto off_px = seen_at(gradient_, *place, edges_[e], reach_px);
+      const auto off_px = edge_seen_at(gradient_, *place, edges_[e], reach_px);
       if (!off_px) continue;
       Seen one{*off_px, {}};
       bool whole = true;

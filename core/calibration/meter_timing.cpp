@@ -18,12 +18,12 @@ constexpr double kClear = 10, kBegun = 0.03, kArrivedWithin = 0.01;
 constexpr double kUnsettled = 0.005;
 constexpr std::size_t kFewest = 4;  ///< samples at the end, and in the dark
 
-struct Scatter {
+struct SampleScatter {
   double mean = 0, deviation = 0;
 };
 
-Scatter scatter_of(std::span<const TimedLux> samples) {
-  Scatter scatter;
+SampleScatter scatter_of_samples(std::span<const TimedLux> samples) {
+  SampleScatter scatter;
   const auto count = static_cast<double>(samples.size());
   for (const TimedLux& sample : samples) scatter.mean += sample.lux / count;
   for (const TimedLux& sample : samples)
@@ -58,7 +58,7 @@ constexpr double kBrightForNoise_lx = 2;
 constexpr double kFreedomOfNoise = 10;
 
 /// Square of a meter's noise as a share of its light: the median over its lights, so that those that wander do not count.
-double noise_of(std::span<const std::vector<double>> lights) {
+double relative_noise_squared(std::span<const std::vector<double>> lights) {
   std::vector<double> shares;
   for (const auto& lux : lights) {
     if (lux.size() < kSteadySamples) continue;
@@ -81,8 +81,8 @@ std::optional<MeterTiming> timing_of(std::span<const TimedLux> samples, double b
       std::find_if(samples.begin(), samples.end(), [&](const TimedLux& sample) { return sample.at_s > begun_s; });
   const auto dark_count = static_cast<std::size_t>(first_after - samples.begin());
   if (dark_count < kFewest || samples.size() < dark_count + 2 * kFewest) return std::nullopt;
-  const Scatter dark = scatter_of(samples.first(dark_count));
-  const Scatter lit = scatter_of(samples.last(std::max(kFewest, (samples.size() - dark_count) / 3)));
+  const SampleScatter dark = scatter_of_samples(samples.first(dark_count));
+  const SampleScatter lit = scatter_of_samples(samples.last(std::max(kFewest, (samples.size() - dark_count) / 3)));
   const double change = std::abs(lit.mean - dark.mean);
   if (!(change > kClear * std::hypot(dark.deviation, lit.deviation))) return std::nullopt;
 
@@ -148,7 +148,7 @@ std::vector<std::vector<std::optional<SteadyReading>>> ReadingLog::readings() co
     if (!timing_[m]) continue;
     std::vector<std::vector<double>> lux;
     for (const Span& light : lights_) lux.push_back(samples_of(m, light));
-    const double noise_squared = noise_of(lux);
+    const double noise_squared = relative_noise_squared(lux);
     const double freedom = noise_squared > 0 ? kFreedomOfNoise : 0;
     for (std::size_t k = 0; k < lights_.size(); ++k) {
       if (lux[k].size() < kSteadySamples) continue;

@@ -35,7 +35,7 @@ struct Case {
   bool bad;           ///< with heads that hang or turn the wrong way, and lines that are swapped
   double camera_rad;  ///< how far the camera is turned off its stated pose
 };
-constexpr Case kCases[] = {{"real", false, 0}, {"bad", true, 0}, {"real, camera 1° off", false, rad_from_deg(1)}};
+constexpr Case kHeadCases[] = {{"real", false, 0}, {"bad", true, 0}, {"real, camera 1° off", false, rad_from_deg(1)}};
 constexpr double kCameraKnown_rad = rad_from_deg(0.01);
 
 /// One simulated rig.
@@ -207,7 +207,7 @@ BenchRow row_of(const Case& of, const std::vector<JudgedHead>& heads) {
 std::vector<BenchRow> bench_heads(const BenchOptions& options) {
   const int rigs = options.seeds.value_or(options.quick ? 2 : 100);
   std::vector<BenchRow> rows;
-  for (const Case& of : kCases) {
+  for (const Case& of : kHeadCases) {
     if (!options.only.empty() && std::string_view(of.name).substr(0, options.only.size()) != options.only) continue;
     std::vector<JudgedHead> heads;
     for (int r = 0; r < rigs; ++r) {

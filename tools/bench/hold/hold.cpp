@@ -165,7 +165,7 @@ class FaultCases {
   std::uint64_t seed_;
 };
 
-BenchRow row_of(std::string case_name, std::string method, double error, double target) {
+BenchRow held_row(std::string case_name, std::string method, double error, double target) {
   BenchRow row;
   row.case_name = std::move(case_name);
   row.method = std::move(method);
@@ -195,7 +195,7 @@ std::vector<BenchRow> named_faults(const Session& session, const LightModel& mod
     }
     if (cases == 0) continue;
     std::sort(after_s.begin(), after_s.end());
-    BenchRow row = row_of(kind, "readings alone", 1 - static_cast<double>(named) / cases, 0.05);
+    BenchRow row = held_row(kind, "readings alone", 1 - static_cast<double>(named) / cases, 0.05);
     row.seconds = std::chrono::duration<double>(Clock::now() - started).count() / cases;
     row.further = {
         {"cases", fmt::format("{}", cases)},
@@ -239,7 +239,7 @@ BenchRow quiet_hours(const Session& session, const LightModel& model, const Benc
       quiet_h += 1 / 60.0;
     }
   }
-  BenchRow row = row_of("quiet hours", "readings alone", alarms, 0);
+  BenchRow row = held_row("quiet hours", "readings alone", alarms, 0);
   row.seconds = std::chrono::duration<double>(Clock::now() - started).count();
   row.further = {{"cases", fmt::format("{:.0f} h", quiet_h)}};
   return row;
@@ -393,7 +393,7 @@ std::vector<BenchRow> crossing_rows(const BenchOptions& options) {
       worst = std::max(worst, outcome.worst);
       overshoot = std::max(overshoot, outcome.overshoot);
     }
-    BenchRow row = row_of("cross-light 45 %", method, worst, 0.02);
+    BenchRow row = held_row("cross-light 45 %", method, worst, 0.02);
     if (std::string(method) != "luxrig") row.target_error.reset();
     row.seconds = std::chrono::duration<double>(Clock::now() - started).count() / seeds;
     row.further = {{"cases", fmt::format("{}", seeds)},
