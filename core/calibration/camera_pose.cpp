@@ -180,14 +180,14 @@ double median_of(std::vector<double> values) {
 }
 
 /// Where an edge is seen off where a camera shows it, and how that follows from a change of the camera.
-struct Seen {
+struct SeenEdge {
   double off_px = 0;
   Change slope = Change::Zero();
 };
 
-std::vector<double> distances_px(const std::vector<Seen>& seen) {
+std::vector<double> distances_px(const std::vector<SeenEdge>& seen) {
   std::vector<double> off;
-  for (const Seen& one : seen) off.push_back(std::abs(one.off_px));
+  for (const SeenEdge& one : seen) off.push_back(std::abs(one.off_px));
   return off;
 }
 
@@ -198,18 +198,18 @@ class Fit {
       : gradient_(gradient), stated_(stated), edges_(edges), by_(best_turn(coarse, stated, edges)) {}
 
   /// Of edges with number % kHeldOutEvery == 0, or the others.
-  [[nodiscard]] std::vector<Seen> seen(const Change& by, bool held_out, double reach_px) const {
+  [[nodiscard]] std::vector<SeenEdge> seen(const Change& by, bool held_out, double reach_px) const {
     const Camera camera = changed(stated_, by);
     std::vector<Camera> around;
     for (Index k = 0; k < kUnknowns; ++k) around.push_back(changed(stated_, by + kStep[k] * Change::Unit(k)));
-    std::vector<Seen> seen;
+    std::vector<SeenEdge> seen;
     for (std::size_t e = 0; e < edges_.size(); ++e) {
       if ((e % kHeldOutEvery == 0) != held_out) continue;
       const auto place = shown(camera, edges_[e]);
       if (!place) continue;
       const auto off_px = edge_seen_at(gradient_, *place, edges_[e], reach_px);
       if (!off_px) continue;
-      Seen one{*off_px, {}};
+      SeenEdge one{*off_px, {}};
       bool whole = true;
       for (Index k = 0; k < kUnknowns && whole; ++k) {
         const auto moved = shown(around[static_cast<std::size_t>(k)], edges_[e]);
@@ -223,14 +223,14 @@ class Fit {
 
   /// One round of least squares; false = too few edges are seen.
   [[nodiscard]] bool step(double reach_px) {
-    const std::vector<Seen> seen = this->seen(by_, false, reach_px);
+    const std::vector<SeenEdge> seen = this->seen(by_, false, reach_px);
     edges_seen_ = seen.size();
     if (seen.size() < kLeastEdges) return false;
     const double scatter_px = std::max(kLeastScatter_px, 1.48 * median_of(distances_px(seen))),
                  widest_px = 4.7 * scatter_px;
     information_ = kPrior.cwiseAbs2().cwiseInverse().asDiagonal();
     Change pull = -information_ * by_;
-    for (const Seen& one : seen) {
+    for (const SeenEdge& one : seen) {
       const double share = one.off_px / widest_px;
       if (std::abs(share) >= 1) continue;
       const double weight = (1 - share * share) * (1 - share * share) / (scatter_px * scatter_px * kAlike);

@@ -102,11 +102,11 @@ std::vector<Joints> search_aims(const SeenSurface& surface, const RayScene& rays
     heads.push_back(start_of(setup.stated, kind));
     likely.push_back(std::pow(kPerOddity, kind.oddities()));
   }
-  struct Candidate {
+  struct AimCandidate {
     Joints joints;
     std::vector<std::uint8_t> shows;
   };
-  std::vector<Candidate> candidates;
+  std::vector<AimCandidate> candidates;
   const JointRange range = with_run_up(setup.range);
   const std::size_t step = std::max<std::size_t>(1, places.size() / kSearchPlaces);
   for (std::size_t p = 0; p < places.size(); p += step)
@@ -117,9 +117,9 @@ std::vector<Joints> search_aims(const SeenSurface& surface, const RayScene& rays
     }
   std::vector<Joints> aims;
   for (int k = 0; k < kSearchAims; ++k) {
-    const Candidate* best = nullptr;
+    const AimCandidate* best = nullptr;
     double most = 0;
-    for (const Candidate& candidate : candidates) {
+    for (const AimCandidate& candidate : candidates) {
       double gain = 0;
       for (std::size_t h = 0; h < heads.size(); ++h) gain += candidate.shows[h] ? likely[h] : 0;
       if (gain <= most) continue;
@@ -132,7 +132,7 @@ std::vector<Joints> search_aims(const SeenSurface& surface, const RayScene& rays
     for (std::size_t h = 0; h < heads.size(); ++h)
       if (best->shows[h]) likely[h] *= kNotShown;
     // What it did not show, its neighbours do not show either.
-    std::erase_if(candidates, [&](const Candidate& c) {
+    std::erase_if(candidates, [&](const AimCandidate& c) {
       return std::abs(c.joints.pan_rad - chosen.pan_rad) < kApart_rad &&
              std::abs(c.joints.tilt_rad - chosen.tilt_rad) < kApart_rad;
     });

@@ -30,12 +30,13 @@ constexpr double kTarget_deg = 0.1;
 /// Within it a direction, which has two axes, lies as often as one axis within two standard errors.
 constexpr double kTwoErrors = 2.486;
 
-struct Case {
+struct HeadCase {
   const char* name;
   bool bad;           ///< with heads that hang or turn the wrong way, and lines that are swapped
   double camera_rad;  ///< how far the camera is turned off its stated pose
 };
-constexpr Case kHeadCases[] = {{"real", false, 0}, {"bad", true, 0}, {"real, camera 1° off", false, rad_from_deg(1)}};
+constexpr HeadCase kHeadCases[] = {
+    {"real", false, 0}, {"bad", true, 0}, {"real, camera 1° off", false, rad_from_deg(1)}};
 constexpr double kCameraKnown_rad = rad_from_deg(0.01);
 
 /// One simulated rig.
@@ -47,7 +48,7 @@ struct SimulatedRig {
   std::unique_ptr<HeadPictures> pictures;
 };
 
-std::unique_ptr<SimulatedRig> simulate(std::uint64_t seed, const Case& of, int threads) {
+std::unique_ptr<SimulatedRig> simulate(std::uint64_t seed, const HeadCase& of, int threads) {
   HeadRig stated = head_rig(seed);
   sim::Deviations deviations = of.bad ? sim::Deviations::bad() : sim::Deviations::real();
   deviations.seed = seed;
@@ -169,7 +170,7 @@ double share_below(std::vector<double> values, double share) {
   return values[at];
 }
 
-BenchRow row_of(const Case& of, const std::vector<JudgedHead>& heads) {
+BenchRow row_of(const HeadCase& of, const std::vector<JudgedHead>& heads) {
   std::vector<double> off_deg, in_errors, rig_seconds;
   int refused = 0, silently_wrong = 0;
   double seconds = 0;
@@ -207,7 +208,7 @@ BenchRow row_of(const Case& of, const std::vector<JudgedHead>& heads) {
 std::vector<BenchRow> bench_heads(const BenchOptions& options) {
   const int rigs = options.seeds.value_or(options.quick ? 2 : 100);
   std::vector<BenchRow> rows;
-  for (const Case& of : kHeadCases) {
+  for (const HeadCase& of : kHeadCases) {
     if (!options.only.empty() && std::string_view(of.name).substr(0, options.only.size()) != options.only) continue;
     std::vector<JudgedHead> heads;
     for (int r = 0; r < rigs; ++r) {
