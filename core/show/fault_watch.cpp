@@ -26,8 +26,17 @@ constexpr int kSame = 4;
 constexpr double kTellSeveral_s = 40;
 /// Samples in a row as usual end a finding.
 constexpr int kOver = 10;
+/// Levels that differ by less are the same; a dark lamp counts as this dim. Beyond, what each lamp gives at a meter is
+/// known to this share.
+constexpr double kSameShare = 0.003, kDimmestLevel = 0.01, kModelError = 0.15;
 /// Less than this is no fault: lamps warm up by so much, meters drift.
 constexpr double kFaultShare = 0.08;
+
+bool other_levels(const std::vector<double>& a, const std::vector<double>& b) {
+  return !std::equal(a.begin(), a.end(), b.begin(), b.end(), [](double x, double y) {
+    return std::abs(x - y) < kSameShare * std::max({x, y, kDimmestLevel});
+  });
+}
 
 bool is_benign(const ChangeCause& cause) {
   switch (cause.kind) {
@@ -92,6 +101,9 @@ void FaultWatch::forget() {
 
 void FaultWatch::look(Time now, const GainEstimator& estimator, std::span<const LuxReading> sample,
                       const std::vector<double>& levels) {
+  // Under other levels a model that is wrong of one lamp makes another ratio.
+  if (!changed_ && other_levels(learnt_at_, levels)) usual_.assign(usual_.size(), {});
+  if (!changed_) learnt_at_ = levels;
   bool differs = false;
   for (const LuxReading& reading : sample) {
     const double stated_lx = estimator.stated_lux(reading.luxmeter, levels);
@@ -107,7 +119,6 @@ void FaultWatch::look(Time now, const GainEstimator& estimator, std::span<const 
     differs = differs || usual.differs();
   }
   if (!differs && !changed_) {
-    learnt_at_ = levels;
     for (const LuxReading& reading : sample)
       if (Usual& usual = usual_[reading.luxmeter]; !usual.recent.empty()) usual.learn(usual.recent.back());
     return;
@@ -146,16 +157,19 @@ LightChange FaultWatch::change(const GainEstimator& estimator, const std::vector
     change.before_lx[row] = usual.ratio * stated_lx;
     change.now_lx[row] = usual.since_sum / usual.since_samples * stated_lx;
     const double share = std::hypot(usual.deviation() / usual.ratio / std::sqrt(usual.since_samples), kUnquiet,
-                                    learnt_at_.empty() ? 0 : estimator.curve_error_at_meter(m, learnt_at_, levels));
-    change.error_lx[row] = share * change.before_lx[row] + 1e-3;
+                                    estimator.curve_error_at_meter(m, learnt_at_, levels));
+    double of_levels = 0;  // by lamps that have changed since it was usual
     const double dark_lx = estimator.stated_lux(m, one);
     change.daylight[row] = usual.ratio * dark_lx;
     for (std::size_t f = 0; f < levels.size(); ++f) {
-      if (!(levels[f] > 0)) continue;
-      one[f] = levels[f];
-      change.of_fixture(row, static_cast<Index>(f)) = usual.ratio * (estimator.stated_lux(m, one) - dark_lx);
+      if (!(levels[f] > 0) && !(learnt_at_[f] > 0)) continue;
+      one[f] = 1;
+      const double per_level = usual.ratio * (estimator.stated_lux(m, one) - dark_lx);
       one[f] = 0;
+      change.of_fixture(row, static_cast<Index>(f)) = per_level * levels[f];
+      of_levels += std::pow(kModelError * per_level * (levels[f] - learnt_at_[f]), 2);
     }
+    change.error_lx[row] = std::hypot(share * change.before_lx[row], std::sqrt(of_levels), 1e-3);
   }
   if (change.daylight.isZero()) change.daylight.resize(0);
   return change;
