@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace luxrig {
 namespace {
@@ -26,17 +27,14 @@ constexpr int kSame = 4;
 constexpr double kTellSeveral_s = 40;
 /// Samples in a row as usual end a finding.
 constexpr int kOver = 10;
-/// Levels that differ by less are the same; a dark lamp counts as this dim. Beyond, what each lamp gives at a meter is
-/// known to this share.
-constexpr double kSameShare = 0.003, kDimmestLevel = 0.01, kModelError = 0.15;
+/// What each lamp gives at a meter is known to this share. When levels have changed so much that this makes up more than
+/// kMostOfLevels of a reading, what is usual is learnt anew.
+constexpr double kModelError = 0.15, kMostOfLevels = 0.01;
+/// The slowest meters of the field answer this late.
+constexpr Duration kSlowestMeter = std::chrono::milliseconds(2500);
+constexpr Duration kLookEvery = std::chrono::seconds(1);
 /// Less than this is no fault: lamps warm up by so much, meters drift.
 constexpr double kFaultShare = 0.08;
-
-bool other_levels(const std::vector<double>& a, const std::vector<double>& b) {
-  return !std::equal(a.begin(), a.end(), b.begin(), b.end(), [](double x, double y) {
-    return std::abs(x - y) < kSameShare * std::max({x, y, kDimmestLevel});
-  });
-}
 
 bool is_benign(const ChangeCause& cause) {
   switch (cause.kind) {
@@ -85,42 +83,90 @@ bool FaultWatch::Usual::differs() const {
   return std::abs(mean - ratio) > std::max(kDiffers * noise, kSmallestShare * ratio);
 }
 
-FaultWatch::FaultWatch(const Rig& rig) : usual_(rig.luxmeters.size()) {
+FaultWatch::FaultWatch(const Rig& rig) : usual_(rig.luxmeters.size()), heard_(rig.luxmeters.size()) {
   for (const Fixture& fixture : rig.fixtures) fixtures_.push_back(fixture.name);
   for (const Luxmeter& meter : rig.luxmeters) meters_.push_back(meter.name);
 }
 
 void FaultWatch::forget() {
   usual_.assign(usual_.size(), {});
+  heard_.assign(heard_.size(), {});
   learnt_at_.clear();
+  last_levels_.clear();
   changed_ = false;
   quiet_ = same_ = 0;
   candidate_.clear();
   found_.reset();
 }
 
-void FaultWatch::look(Time now, const GainEstimator& estimator, std::span<const LuxReading> sample,
-                      const std::vector<double>& levels) {
-  // Under other levels a model that is wrong of one lamp makes another ratio.
-  if (!changed_ && other_levels(learnt_at_, levels)) usual_.assign(usual_.size(), {});
-  if (!changed_) learnt_at_ = levels;
+void FaultWatch::light_changes(Time settled) {
+  steady_from_ = settled + kSlowestMeter;
+  heard_.assign(heard_.size(), {});
+}
+
+void FaultWatch::hear(const LuxReading& reading) {
+  if (reading.taken < steady_from_) return;
+  Heard& heard = heard_[reading.luxmeter];
+  heard.sum_lx += reading.lux;
+  ++heard.count;
+  heard.last = reading.taken;
+}
+
+bool FaultWatch::take_heard(const GainEstimator& estimator, const std::vector<double>& levels) {
   bool differs = false;
-  for (const LuxReading& reading : sample) {
-    const double stated_lx = estimator.stated_lux(reading.luxmeter, levels);
-    if (!(stated_lx > kDark_lx)) continue;
-    Usual& usual = usual_[reading.luxmeter];
-    const double ratio = reading.lux / stated_lx;
+  for (std::size_t m = 0; m < usual_.size(); ++m) {
+    const Heard heard = std::exchange(heard_[m], {});
+    const double stated_lx = estimator.stated_lux(m, levels);
+    if (heard.count == 0 || !(stated_lx > kDark_lx)) continue;
+    const double lux = heard.sum_lx / heard.count;
+    if (estimator.judge({m, lux, heard.last}, levels).stuck) continue;
+    Usual& usual = usual_[m];
+    const double ratio = lux / stated_lx;
     if (usual.recent.size() == kRecent) usual.recent.erase(usual.recent.begin());
     usual.recent.push_back(ratio);
+    usual.fresh = true;
     if (changed_) {
       usual.since_sum += ratio;
       ++usual.since_samples;
     }
     differs = differs || usual.differs();
   }
+  return differs;
+}
+
+double FaultWatch::error_of_levels(const GainEstimator& estimator, std::size_t luxmeter,
+                                   const std::vector<double>& levels) const {
+  std::vector<double> one(levels.size(), 0.0);
+  const double dark_lx = estimator.stated_lux(luxmeter, one);
+  double sum = 0;
+  for (std::size_t f = 0; f < levels.size(); ++f) {
+    const double by = levels[f] - learnt_at_[f];
+    if (by == 0) continue;
+    one[f] = std::abs(by);
+    sum += std::pow(kModelError * (estimator.stated_lux(luxmeter, one) - dark_lx), 2);
+    one[f] = 0;
+  }
+  return usual_[luxmeter].ratio * std::sqrt(sum);
+}
+
+void FaultWatch::look(Time now, const GainEstimator& estimator, const std::vector<double>& levels) {
+  if (now < steady_from_ || now - looked_at_ < kLookEvery) return;
+  looked_at_ = now;
+  if (last_levels_ != levels) {
+    last_levels_ = levels;
+    bool other = learnt_at_.size() != levels.size();
+    // Under other levels a model that is wrong of one lamp makes another ratio.
+    for (std::size_t m = 0; m < usual_.size() && !other && !changed_; ++m)
+      other = error_of_levels(estimator, m, levels) > kMostOfLevels * usual_[m].ratio * estimator.stated_lux(m, levels);
+    if (other) {
+      forget();
+      last_levels_ = learnt_at_ = levels;
+    }
+  }
+  const bool differs = take_heard(estimator, levels);
   if (!differs && !changed_) {
-    for (const LuxReading& reading : sample)
-      if (Usual& usual = usual_[reading.luxmeter]; !usual.recent.empty()) usual.learn(usual.recent.back());
+    for (Usual& usual : usual_)
+      if (std::exchange(usual.fresh, false)) usual.learn(usual.recent.back());
     return;
   }
   if (!changed_) {
@@ -158,18 +204,15 @@ LightChange FaultWatch::change(const GainEstimator& estimator, const std::vector
     change.now_lx[row] = usual.since_sum / usual.since_samples * stated_lx;
     const double share = std::hypot(usual.deviation() / usual.ratio / std::sqrt(usual.since_samples), kUnquiet,
                                     estimator.curve_error_at_meter(m, learnt_at_, levels));
-    double of_levels = 0;  // by lamps that have changed since it was usual
+    change.error_lx[row] = std::hypot(share * change.before_lx[row], error_of_levels(estimator, m, levels), 1e-3);
     const double dark_lx = estimator.stated_lux(m, one);
     change.daylight[row] = usual.ratio * dark_lx;
     for (std::size_t f = 0; f < levels.size(); ++f) {
-      if (!(levels[f] > 0) && !(learnt_at_[f] > 0)) continue;
-      one[f] = 1;
-      const double per_level = usual.ratio * (estimator.stated_lux(m, one) - dark_lx);
+      if (!(levels[f] > 0)) continue;
+      one[f] = levels[f];
+      change.of_fixture(row, static_cast<Index>(f)) = usual.ratio * (estimator.stated_lux(m, one) - dark_lx);
       one[f] = 0;
-      change.of_fixture(row, static_cast<Index>(f)) = per_level * levels[f];
-      of_levels += std::pow(kModelError * per_level * (levels[f] - learnt_at_[f]), 2);
     }
-    change.error_lx[row] = std::hypot(share * change.before_lx[row], std::sqrt(of_levels), 1e-3);
   }
   if (change.daylight.isZero()) change.daylight.resize(0);
   return change;

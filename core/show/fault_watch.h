@@ -19,9 +19,12 @@ class FaultWatch {
  public:
   explicit FaultWatch(const Rig& rig);
 
-  /// A sample of every luxmeter that has one, believed or not, under steady light. levels: per fixture.
-  void look(Time now, const GainEstimator& estimator, std::span<const LuxReading> sample,
-            const std::vector<double>& levels);
+  /// The light changes until `settled`. What meters show from then on counts, once the slowest has followed.
+  void light_changes(Time settled);
+  /// Every reading, believed or not.
+  void hear(const LuxReading& reading);
+  /// Call it under steady light, as often as you like. levels: per fixture.
+  void look(Time now, const GainEstimator& estimator, const std::vector<double>& levels);
   /// Adds the alarm, if something is found.
   void tell(ShowStatus& status) const;
   /// All readings so far are of another light, another rig, or are taken as right.
@@ -40,6 +43,7 @@ class FaultWatch {
     double ratio = 0, variance = 0;
     int samples = 0;
     std::vector<double> recent{};  ///< the last few ratios, oldest first
+    bool fresh = false;            ///< the last of them is of this look
     double since_sum = 0;          ///< of ratios since something changed
     int since_samples = 0;
     void learn(double now);
@@ -47,6 +51,11 @@ class FaultWatch {
     [[nodiscard]] double deviation() const;
     [[nodiscard]] bool differs() const;
   };
+  /// Means of what was heard since the last look, and whether any is not usual.
+  [[nodiscard]] bool take_heard(const GainEstimator& estimator, const std::vector<double>& levels);
+  /// Error of a meter's usual reading under these levels, as lamps have changed since it was learnt [lx].
+  [[nodiscard]] double error_of_levels(const GainEstimator& estimator, std::size_t luxmeter,
+                                       const std::vector<double>& levels) const;
   [[nodiscard]] LightChange change(const GainEstimator& estimator, const std::vector<double>& levels) const;
   void judge(Time now, const LightChange& change);
   [[nodiscard]] std::string words(const ChangeCause& cause) const;
@@ -54,8 +63,16 @@ class FaultWatch {
 
   std::vector<std::string> fixtures_, meters_;
   std::vector<Usual> usual_;       ///< per luxmeter
-  std::vector<double> learnt_at_;  ///< levels of the last sample that was usual
-  bool changed_ = false;           ///< some meter reads something else than usual
+  std::vector<double> learnt_at_;  ///< levels when it began to be learnt
+  std::vector<double> last_levels_;
+  struct Heard {
+    double sum_lx = 0;
+    int count = 0;
+    Time last{};
+  };
+  std::vector<Heard> heard_;  ///< per luxmeter, since the last look
+  Time steady_from_{}, looked_at_{};
+  bool changed_ = false;  ///< some meter reads something else than usual
   Time changed_since_{};
   int quiet_ = 0;                       ///< samples in a row without a difference
   std::vector<ChangeCause> candidate_;  ///< of the last sample

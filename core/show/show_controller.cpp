@@ -124,6 +124,7 @@ void ShowController::State::fade(Time now, std::vector<double> from, std::vector
   ++program.revision;
   guard_against_desks(now);
   readings.restart(program.start + program.duration + from_seconds(rig.control.settle_s));
+  faults.light_changes(program.start + program.duration);
   progress.drifted = 0;
 }
 
@@ -425,8 +426,9 @@ void ShowController::reading(Time now, const LuxReading& reading) {
   State& state = *state_;
   if (now < state.last || reading.luxmeter >= state.rig.luxmeters.size()) return;
   if (!std::isfinite(reading.lux) || reading.lux < 0) return state.health.garbled(reading.luxmeter, now);
-  if (state.readings.hear(now, reading, state.health.meter_lost(reading.luxmeter)))
-    state.health.heard(reading.luxmeter, reading.taken);
+  if (!state.readings.hear(now, reading, state.health.meter_lost(reading.luxmeter))) return;
+  state.health.heard(reading.luxmeter, reading.taken);
+  if (!state.bypassed.meter(reading.luxmeter)) state.faults.hear(reading);
 }
 
 void ShowController::health(Time now, std::span<const Health> devices) {

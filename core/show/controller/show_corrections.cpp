@@ -26,6 +26,7 @@ void ShowController::State::take_sample(Time now) {
   if (program.blackout || sharing.shared() || !program.done(now) || too_much_lost() ||
       any_dimmed_for_a_zone(program, now))
     return;  // not the light that was asked for
+  look_at_faults(now);
   if (phase == Phase::measuring ? solving.running() : now - readings.sampled_at() < kSampleEvery) return;
   std::vector<LuxReading> sample;
   for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) {
@@ -45,7 +46,6 @@ void ShowController::State::take_sample(Time now) {
       readings.disbelieve(judgement.luxmeter);  // what it taught before stays: limits rely on it
   }
   scale.look(now, estimator, readings.measured(), program.to_level);
-  look_at_faults(now, sample);
   readings.take(now, sample);
   bool all_believed = true;
   for (std::size_t i = 0; i < rig.luxmeters.size(); ++i)
@@ -64,13 +64,10 @@ void ShowController::State::take_sample(Time now) {
   progress.breaches = std::move(present);
 }
 
-/// What a device reports itself is known already, and what a stuck meter shows is no light.
-void ShowController::State::look_at_faults(Time now, std::span<const LuxReading> sample) {
+/// What a device reports itself is known already.
+void ShowController::State::look_at_faults(Time now) {
   if (lost.any() || bypassed.any_lamp()) return faults.forget();
-  std::vector<LuxReading> alive;
-  for (const LuxReading& reading : sample)
-    if (!estimator.judge(reading, program.to_level).stuck) alive.push_back(reading);
-  faults.look(now, estimator, alive, program.to_level);
+  faults.look(now, estimator, program.to_level);
 }
 
 /// Starts solving for the levels that readings and settings by hand require; take_solved() puts them to use.

@@ -58,6 +58,7 @@ void ShowController::State::step_desks(Time now) {
   if (shared.is) progress.converged = false;
   // Readings under a desk's control are not believed, and limits are still being released.
   if (shared.was && !shared.is) {
+    faults.light_changes(std::max(now + program.limits_released, program.start + program.duration));
     readings.restart(std::max(now + program.limits_released, program.start + program.duration) +
                      from_seconds(rig.control.settle_s));
   }

@@ -124,7 +124,7 @@ struct ShowController::State {
   void resume(Time now);
   void fade_to_safe(Time now);
   void take_sample(Time now);
-  void look_at_faults(Time now, std::span<const LuxReading> sample);
+  void look_at_faults(Time now);
   void solve(Time now, SolveBeside::For what);
   void take_solved(Time now);
   void drop_solving();

@@ -14,7 +14,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Six meters, eight lamps, and a model that is wrong by a tenth of each entry. A sample a second, as the show takes it.
+/// Six meters, eight lamps, and a model that is wrong by a tenth of each entry. A reading a second.
 class Gallery {
  public:
   static constexpr int kMeters = 6, kLamps = 8;
@@ -48,10 +48,9 @@ class Gallery {
       now_ += from_seconds(1);
       VectorXd lux = light_ * Eigen::Map<const VectorXd>(level_.data(), kLamps);
       if (shown) shown(lux);
-      std::vector<LuxReading> sample;
       for (std::size_t m = 0; m < kMeters; ++m)
-        sample.push_back({m, lux[static_cast<Index>(m)] * (1 + noise_ * normal()), now_});
-      watch_->look(now_, *estimator_, sample, level_);
+        watch_->hear({m, lux[static_cast<Index>(m)] * (1 + noise_ * normal()), now_});
+      watch_->look(now_, *estimator_, level_);
       if (watch_->found()) return k + 1;
     }
     return std::nullopt;
