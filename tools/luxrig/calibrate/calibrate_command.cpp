@@ -120,10 +120,11 @@ Result<void> by_meters_in_open_hours(Measuring& measuring) {
   const auto read = measuring.daemon.measure(run.plan(), {}, progress_of(run.plan().size()), measuring.stop);
   if (!read) return tl::unexpected(read.error());
   for (const DaemonRig::Read& step : *read) run.take(step.sent, step.readings);
-  measuring.any = true;
   measuring.light.read_at(
       Eigen::Map<const Eigen::VectorXd>(look->data(), static_cast<Eigen::Index>(look->size())).cwiseMax(kDimmestLevel));
-  return measuring.light.learn(run.readings(measuring.curves));
+  const std::vector<LightReading> readings = run.readings(measuring.curves);
+  measuring.any = measuring.any || !readings.empty();
+  return measuring.light.learn(readings);
 }
 
 Result<void> by_hanging_meters(Measuring& measuring) {
@@ -135,8 +136,8 @@ Result<void> by_hanging_meters(Measuring& measuring) {
   if (!read) return tl::unexpected(read.error());
   for (std::size_t k = 0; k < read->size(); ++k) run.take((*read)[k].sent[run.plan()[k].fixture], (*read)[k].readings);
   measuring.curves = run.curves();
-  measuring.any = true;
   std::vector<LightReading> readings = run.readings();
+  measuring.any = measuring.any || !readings.empty();
   for (LightReading& reading : readings) reading.receiver += measuring.no_points().size();
   return measuring.light.learn(readings);
 }
