@@ -98,6 +98,7 @@ struct ShowStatus {
   std::vector<FixtureStatus> fixtures;
   std::vector<PointStatus> points;
   std::vector<std::optional<LuxReading>> luxmeters;  ///< last believed reading
+  std::vector<std::optional<LuxReading>> shown;      ///< last reading of each luxmeter, believed or not
   std::vector<Alarm> alarms;
   std::vector<DeskStatus> desks;
   std::vector<ByHand> by_hand;     ///< levels by fixture, then goals by point

@@ -161,6 +161,7 @@ ShowStatus ShowController::State::status(Time now) const {
   }
   status.detail = detail(now, status.goals);
   status.luxmeters = readings.believed();
+  status.shown = readings.heard();
   status.alarms = health.alarms();
   for (const LimitBreach& breach : progress.breaches) {
     const Point& point = points_in_force[breach.point];

@@ -149,7 +149,8 @@ Result<json> DaemonRig::look() {
   if (!now) return now;
   const json list = list_of(*now, "luxmeters");
   for (std::size_t m = 0; m < std::min(samples_.size(), list.size()); ++m) {
-    const auto lux = number_of(list[m], "lux"), age_s = number_of(list[m], "age_s");
+    // One lamp alone is not what the model expects where the rig file is wrong, so the show may not believe it.
+    const auto lux = number_of(list[m], "shown_lux"), age_s = number_of(list[m], "shown_age_s");
     if (!lux || !age_s) continue;
     // The same reading again has the same time, but for the way of the status.
     const double at_s = now_s() - *age_s;

@@ -147,6 +147,10 @@ std::string status_json(const StatusInput& input) {
       set(entry, "lux", show.luxmeters[m]->lux);
       set(entry, "age_s", to_seconds(input.now - show.luxmeters[m]->taken));
     }
+    if (m < show.shown.size() && show.shown[m]) {
+      set(entry, "shown_lux", show.shown[m]->lux);
+      set(entry, "shown_age_s", to_seconds(input.now - show.shown[m]->taken));
+    }
     meters.push_back(std::move(entry));
   }
   json& devices = out["devices"] = json::array();
