@@ -43,10 +43,17 @@ void tell_what_is_missing(const Calibration& found, CalibrationReport& report) {
       report.not_found.push_back(fmt::format(
           "The dimmer curve of \"{}\" was not measured. Between dark and full the maker's is taken.", fixture.name));
   }
-  for (const CalibrationReport::Goal& goal : report.goals)
-    if (goal.found.share_of_error() > kWellKnown)
-      report.not_found.push_back(fmt::format("The light at \"{}\" is known to {:.0f} % only (one standard error).",
-                                             goal.point, 100 * goal.found.share_of_error()));
+  std::size_t poorly = 0;
+  const CalibrationReport::Goal* worst = nullptr;
+  for (const CalibrationReport::Goal& goal : report.goals) {
+    if (goal.found.share_of_error() <= kWellKnown) continue;
+    ++poorly;
+    if (!worst || goal.found.share_of_error() > worst->found.share_of_error()) worst = &goal;
+  }
+  if (worst)
+    report.not_found.push_back(fmt::format(
+        "The light at {} of {} goals is not known to {:.0f} % (one standard error). The worst is \"{}\": {:.0f} %.",
+        poorly, report.goals.size(), 100 * kWellKnown, worst->point, 100 * worst->found.share_of_error()));
   for (const CalibrationReport::Reading& reading : report.readings)
     if (std::abs(reading.in_errors) > kOddReading)
       report.not_found.push_back(fmt::format(
