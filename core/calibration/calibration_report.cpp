@@ -34,8 +34,14 @@ std::string light_words(const Rig& rig, const VectorXd& level) {
   return words_of({lamp, level_of_share(rig.fixtures[lamp].measured_curve, level[brightest])}, rig);
 }
 
-void tell_what_is_missing(const Calibration& found, CalibrationReport& report) {
-  for (const CalibratedFixture& fixture : found.fixtures) {
+void tell_what_is_missing(const Calibration& found, const LightUnknowns& known, CalibrationReport& report) {
+  for (std::size_t f = 0; f < found.fixtures.size(); ++f) {
+    const CalibratedFixture& fixture = found.fixtures[f];
+    if (fixture.output.standard_error > 0 && known.read_at(f) < 1)
+      report.not_found.push_back(fmt::format(
+          "The output of \"{}\" is that of its light at level {:.2f}, where it was read. At full light it may be "
+          "another: that depends on its dimmer.",
+          fixture.name, known.read_at(f)));
     if (!(fixture.output.standard_error > 0))
       report.not_found.push_back(fmt::format(
           "No reading told how bright \"{}\" is. Its light is taken as the rig file has it.", fixture.name));
@@ -82,7 +88,7 @@ CalibrationReport report_of(const Session& session, const RigLight& before, cons
     report.readings.push_back({light_words(rig, reading.level), place_name(rig, reading.receiver), reading.lux,
                                reading.lux - in_errors * reading.standard_error_lx, in_errors});
   }
-  tell_what_is_missing(found, report);
+  tell_what_is_missing(found, now.known(), report);
   for (const std::size_t p : now.places_to_measure(of_use, kMostToSettle, no_points))
     report.to_settle.push_back(rig.points[p].name);
   report.found = std::move(found);

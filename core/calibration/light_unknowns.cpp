@@ -313,6 +313,10 @@ double LightUnknowns::gain_standard_error(std::size_t fixture) const {
   return gain(fixture) * std::sqrt(variance_of(static_cast<Index>(fixture)));
 }
 
+double LightUnknowns::read_at(std::size_t fixture) const {
+  return priors_.read_at.size() > 0 ? priors_.read_at[static_cast<Index>(fixture)] : 1;
+}
+
 bool LightUnknowns::gain_is_measured(std::size_t fixture) const {
   const auto f = static_cast<Index>(fixture);
   return variance_of(f) < kSaysSomething * prior_variance_[f];

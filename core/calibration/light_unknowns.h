@@ -124,6 +124,9 @@ class LightUnknowns {
   /// Output over rated flux.
   [[nodiscard]] double gain(std::size_t fixture) const;
   [[nodiscard]] double gain_standard_error(std::size_t fixture) const;
+  /// The level at which it is read. Its output is that of its light there, by the curve that is known of its dimmer: below
+  /// level 1 it is not its output at full light.
+  [[nodiscard]] double read_at(std::size_t fixture) const;
   /// Readings have told something of it; else gain() is the rig file's.
   [[nodiscard]] bool gain_is_measured(std::size_t fixture) const;
   /// How far the mount is off: kMountUnknowns entries.

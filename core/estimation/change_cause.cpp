@@ -25,8 +25,8 @@ constexpr double kMargin = 12;
 constexpr double kRare = 6;
 /// A cause explains a change if its χ² per meter is less than this: models are wrong by more than noise.
 constexpr double kExplains = 6;
-/// How well it is known what a lamp gives at a meter, as a share; and what two meters make of the same light.
-constexpr double kLampShare = 0.15, kMeterShare = 0.02;
+/// By how much two meters differ over the same light, as a share.
+constexpr double kMeterShare = 0.02;
 /// A lamp lights a meter directly if it gives this share of its light.
 constexpr double kLightsDirectly = 0.05;
 /// Two meters or levels that differ by less may be exchanged unnoticed.

@@ -47,5 +47,7 @@ struct ChangeCause {
 [[nodiscard]] std::vector<ChangeCause> causes_of(const LightChange& change);
 
 inline constexpr std::size_t kMostCauses = 3;
+/// How well it is known what a lamp gives at a meter, as a share of that.
+inline constexpr double kLampShare = 0.15;
 
 }  // namespace luxrig

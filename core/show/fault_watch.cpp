@@ -27,9 +27,9 @@ constexpr int kSame = 4;
 constexpr double kTellSeveral_s = 40;
 /// Samples in a row as usual end a finding.
 constexpr int kOver = 10;
-/// What each lamp gives at a meter is known to this share. When levels have changed so much that this makes up more than
-/// kMostOfLevels of a reading, what is usual is learnt anew.
-constexpr double kModelError = 0.15, kMostOfLevels = 0.01;
+/// When levels have changed so much that kLampShare of that is more than this share of a reading, what is usual is learnt
+/// anew.
+constexpr double kMostOfLevels = 0.01;
 /// The slowest meters of the field answer this late.
 constexpr Duration kSlowestMeter = std::chrono::milliseconds(2500);
 constexpr Duration kLookEvery = std::chrono::seconds(1);
@@ -143,7 +143,7 @@ double FaultWatch::error_of_levels(const GainEstimator& estimator, std::size_t l
     const double by = levels[f] - learnt_at_[f];
     if (by == 0) continue;
     one[f] = std::abs(by);
-    sum += std::pow(kModelError * (estimator.stated_lux(luxmeter, one) - dark_lx), 2);
+    sum += std::pow(kLampShare * (estimator.stated_lux(luxmeter, one) - dark_lx), 2);
     one[f] = 0;
   }
   return usual_[luxmeter].ratio * std::sqrt(sum);

@@ -89,7 +89,7 @@ struct Measuring {
   }
 };
 
-/// All lamps at once, so that no limit is exceeded.
+/// All lamps at once, so dim that few limits are in the way; the daemon keeps them.
 std::vector<double> together(const Measuring& measuring) {
   const std::vector<double>& alone = measuring.levels.brightest;
   std::vector<double> level;
@@ -146,7 +146,7 @@ Result<void> by_camera(Measuring& measuring) {
   const auto readings = measure_by_camera(measuring.session, *measuring.camera, measuring.daemon,
                                           measuring.levels.brightest, measuring.curves, measuring.stop);
   if (!readings) return tl::unexpected(readings.error());
-  measuring.any = true;
+  measuring.any = measuring.any || !readings->empty();
   return measuring.light.learn(*readings);
 }
 
@@ -205,12 +205,16 @@ std::filesystem::path beside(const std::filesystem::path& file, const char* endi
 void print_report(const Measuring& measuring, const GoalError& before, const CalibrationReport& told) {
   const Rig& rig = measuring.session.rig;
   const LightUnknowns& known = measuring.light.known();
+  const char* note = "";
   Table lamps({"fixture", ">output", ">± se", ">moved cm", ">± se", ">turned °", ">± se", "dimmer"});
   for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
     const Eigen::VectorXd off = known.mount(f), error = known.mount_standard_error(f);
     const MeasuredCurve& curve = measuring.curves[f].of_level;
     const bool measured = known.gain_is_measured(f);
-    lamps.row({rig.fixtures[f].name, measured ? fmt::format("{:.3f}", known.gain(f)) : "",
+    if (measured && known.read_at(f) < 1)
+      note = "* as its light says at the level where it was read; at full light it may be another\n";
+    lamps.row({rig.fixtures[f].name,
+               measured ? fmt::format("{:.3f}{}", known.gain(f), known.read_at(f) < 1 ? " *" : "") : "",
                measured ? fmt::format("{:.3f}", known.gain_standard_error(f)) : "not measured",
                fmt::format("{:.1f}", 100 * off.head<3>().norm()), fmt::format("{:.1f}", 100 * error.head<3>().norm()),
                fmt::format("{:.1f}", deg_from_rad(off.tail<3>().norm())),
@@ -218,7 +222,7 @@ void print_report(const Measuring& measuring, const GoalError& before, const Cal
                curve.empty() ? "not measured"
                              : fmt::format("{:.0f} % of its light at half level", 100 * share_at_level(curve, 0.5))});
   }
-  fmt::print("{}\nThe light at {} goals was known to {}. Now it is known to {}.\n", lamps.text(), before.goals,
+  fmt::print("{}{}\nThe light at {} goals was known to {}. Now it is known to {}.\n", lamps.text(), note, before.goals,
              known_words(before), known_words(measuring.light.error_of_goals(measuring.levels.use)));
   if (measuring.camera)
     fmt::print("What is left of its variance: {}.\n",
