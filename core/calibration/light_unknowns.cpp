@@ -67,6 +67,9 @@ void LightUnknowns::check(const LightSensitivity& sensitivity) const {
   LUXRIG_CHECK(sensitivity.doubtful.size() == 0 || (sensitivity.doubtful.rows() == sensitivity.lux.rows() &&
                                                     sensitivity.doubtful.cols() == sensitivity.lux.cols()),
                "another rig's doubtful light");
+  LUXRIG_CHECK(sensitivity.paint_taken_at.size() == 0 ||
+                   sensitivity.paint_taken_at.size() == static_cast<Index>(sensitivity.paint.size()),
+               "{} reflectances of {} materials", sensitivity.paint_taken_at.size(), sensitivity.paint.size());
   LUXRIG_CHECK(sensitivity.place.empty() || static_cast<Index>(sensitivity.place.size()) == light_.lux.rows(),
                "{} places of {} receivers", sensitivity.place.size(), light_.lux.rows());
 }
@@ -110,7 +113,8 @@ double LightUnknowns::light_and_slope(const LightQuery& query, double fixed_lx, 
     double of_lamp = light_.lux(r, j) + mount.dot(value_.segment(mount_at(j), kMountUnknowns) -
                                                   taken_at_.segment(kMountUnknowns * j, kMountUnknowns));
     for (Index p = 0; p < materials(); ++p)
-      of_lamp += light_.paint[static_cast<std::size_t>(p)](r, j) * value_[paint_at(p)];
+      of_lamp += light_.paint[static_cast<std::size_t>(p)](r, j) *
+                 (value_[paint_at(p)] - (light_.paint_taken_at.size() > 0 ? light_.paint_taken_at[p] : 0.0));
     const double full = level * std::exp(value_[j]) * lamp_share(showing, j);
     lux += full * of_lamp;
     slope[j] = full * of_lamp;

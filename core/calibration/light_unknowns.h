@@ -37,6 +37,7 @@ struct LightSensitivity {
   std::vector<Eigen::MatrixXd> bend{};
   /// P: per material, receivers × fixtures: change of lux with a relative change of its reflectance of 1.
   std::vector<Eigen::MatrixXd> paint{};
+  Eigen::VectorXd paint_taken_at{};  ///< per material: true over stated reflectance less 1, of lux; empty = 0
   /// Receivers × fixtures: LightPriors::rest_share of this light is what nothing explains; empty = lux.
   Eigen::MatrixXd doubtful{};
   /// Per receiver: receivers with the same number are at the same place, such as a luxmeter at a point. Empty = each its

@@ -18,6 +18,10 @@ namespace {
 constexpr int kTakenAnew = 4;
 /// Mounts stand still if none moves by more than this, as a share of its standard deviation before.
 constexpr double kStandsStill = 0.02;
+/// The light is traced anew if a mount or paint is farther from where it was traced, in the same measure.
+constexpr double kFarFromTraced = 0.3;
+constexpr int kTracedAnew = 2;
+constexpr double kBrightestPaint = 0.95;
 /// A lamp that may not be lit has this level instead of none.
 constexpr double kDimmest = 0.01;
 /// Lamps are read one by one until no more than this share of what all would teach is left.
@@ -41,28 +45,32 @@ LightPriors usual_priors(const Rig& rig) {
 
 double error_in_hand_lx(double lux) { return std::hypot(0.009 * lux, 0.05); }
 
-RigLight::RigLight(const Session& session, LightPriors priors, TransportMatrix light,
+RigLight::RigLight(const Session& session, LightPriors priors, const ComputeOptions& options, TransportMatrix light,
                    std::vector<Eigen::MatrixXd> paint, LightSensitivity sensitivity)
     : session_(&session),
       priors_(priors),
+      options_(options),
       light_(std::move(light)),
+      stated_lux_(light_.lux_per_level.leftCols(static_cast<Index>(session.rig.fixtures.size()))),
       paint_(std::move(paint)),
-      known_(std::move(sensitivity), std::move(priors)) {}
+      known_(std::move(sensitivity), std::move(priors)) {
+  traced_at_ = found();
+}
 
 Result<RigLight> RigLight::of(const Session& session, const LightPriors& priors, const ComputeOptions& options) {
   auto light = compute_transport(session, options);
   if (!light) return tl::unexpected(light.error());
   auto paint = paint_sensitivity(session.rig, session.scene, *light, options);
   if (!paint) return tl::unexpected(paint.error());
-  return of_light(session, priors, std::move(*light), std::move(*paint));
+  return of_light(session, priors, options, std::move(*light), std::move(*paint));
 }
 
 Result<RigLight> RigLight::with_priors(const LightPriors& priors) const {
-  return of_light(*session_, priors, light_, paint_);
+  return of_light(*session_, priors, options_, light_, paint_);
 }
 
-Result<RigLight> RigLight::of_light(const Session& session, const LightPriors& priors, TransportMatrix light,
-                                    std::vector<Eigen::MatrixXd> paint) {
+Result<RigLight> RigLight::of_light(const Session& session, const LightPriors& priors, const ComputeOptions& options,
+                                    TransportMatrix light, std::vector<Eigen::MatrixXd> paint) {
   auto sensitivity = mount_sensitivity(session.rig, *session.rays, light, priors);
   if (!sensitivity) return tl::unexpected(sensitivity.error());
   sensitivity->paint = paint;
@@ -72,30 +80,68 @@ Result<RigLight> RigLight::of_light(const Session& session, const LightPriors& p
     const std::vector<double> brightest = brightest_levels(session.rig, light.lux_per_level.leftCols(fixtures));
     with_levels.read_at = Eigen::Map<const VectorXd>(brightest.data(), fixtures).cwiseMax(kDimmest);
   }
-  return RigLight(session, std::move(with_levels), std::move(light), std::move(paint), std::move(*sensitivity));
+  return RigLight(session, std::move(with_levels), options, std::move(light), std::move(paint),
+                  std::move(*sensitivity));
 }
 
-Result<void> RigLight::learn(std::span<const LightReading> readings) {
-  known_.learn(readings);
+RigLight::Found RigLight::found() const {
+  Found found;
+  for (std::size_t f = 0; f < session_->rig.fixtures.size(); ++f) found.mounts.push_back(known_.mount(f));
+  found.paint.resize(static_cast<Index>(paint_.size()));
+  for (std::size_t m = 0; m < paint_.size(); ++m) found.paint[static_cast<Index>(m)] = known_.paint(m) - 1;
+  return found;
+}
+
+double RigLight::apart(const Found& a, const Found& b) const {
   VectorXd step(kMountUnknowns);
   step << VectorXd::Constant(3, priors_.position_m), VectorXd::Constant(3, priors_.angle_rad);
+  double most = priors_.reflectance > 0 && a.paint.size() > 0
+                    ? (a.paint - b.paint).cwiseAbs().maxCoeff() / priors_.reflectance
+                    : 0;
+  for (std::size_t f = 0; f < a.mounts.size(); ++f)
+    most = std::max(most, (a.mounts[f] - b.mounts[f]).cwiseQuotient(step).cwiseAbs().maxCoeff());
+  return most;
+}
+
+Result<void> RigLight::trace_anew(const Found& at) {
+  Rig rig = session_->rig;
+  for (std::size_t f = 0; f < rig.fixtures.size(); ++f)
+    rig.fixtures[f].world_from_mount =
+        displaced(rig.fixtures[f].world_from_mount, at.mounts[f].head<3>(), at.mounts[f].tail<3>());
+  Scene scene = session_->scene;
+  for (std::size_t m = 0; m < scene.materials.size(); ++m)
+    scene.materials[m].reflectance_rgb = (scene.materials[m].reflectance_rgb * (1 + at.paint[static_cast<Index>(m)]))
+                                             .cwiseMax(0)
+                                             .cwiseMin(kBrightestPaint);
+  const RayScene rays(std::move(scene));
+  auto light = compute_transport(rig, rays, options_);
+  if (!light) return tl::unexpected(light.error());
+  light_ = std::move(*light);
+  traced_at_ = at;
+  return {};
+}
+
+Result<void> RigLight::take_anew() {
   for (int round = 0; round < kTakenAnew; ++round) {
-    std::vector<VectorXd> mounts;
-    for (std::size_t f = 0; f < session_->rig.fixtures.size(); ++f) mounts.push_back(known_.mount(f));
-    auto there = mount_sensitivity(session_->rig, *session_->rays, light_, priors_, mounts);
+    const Found at = found();
+    auto there = mount_sensitivity(session_->rig, *session_->rays, light_, priors_, at.mounts);
     if (!there) return tl::unexpected(there.error());
     there->paint = paint_;
+    there->paint_taken_at = traced_at_.paint;
     known_.relinearise(std::move(*there));
-    double moved = 0;
-    for (std::size_t f = 0; f < mounts.size(); ++f)
-      moved = std::max(moved, (known_.mount(f) - mounts[f]).cwiseQuotient(step).cwiseAbs().maxCoeff());
-    if (moved < kStandsStill) break;
+    if (apart(found(), at) < kStandsStill) break;
   }
   return {};
 }
 
-Eigen::MatrixXd RigLight::stated_lux() const {
-  return light_.lux_per_level.leftCols(static_cast<Index>(session_->rig.fixtures.size()));
+Result<void> RigLight::learn(std::span<const LightReading> readings) {
+  known_.learn(readings);
+  for (int round = 0;; ++round) {
+    if (auto taken = take_anew(); !taken) return taken;
+    const Found at = found();
+    if (round == kTracedAnew || apart(at, traced_at_) < kFarFromTraced) return {};
+    if (auto traced = trace_anew(at); !traced) return traced;
+  }
 }
 
 GoalError RigLight::error_of_goals(const VectorXd& level) const {

@@ -37,11 +37,13 @@ class RigLight {
 
   /// Per fixture: the level at which it turned out to be read. Before anything is learnt.
   void read_at(const Eigen::VectorXd& level) { known_.read_at(level); }
-  /// Adds readings, and takes the light's changes anew at the mounts found, until these stand still.
+  /// Adds readings, and takes the light's changes anew at the mounts found, until these stand still. The light is traced
+  /// anew (a second or so) where mounts and paint are found to be far from where it was: a beam that hits a picture in
+  /// place of the wall beside it changes what is reflected, too.
   [[nodiscard]] Result<void> learn(std::span<const LightReading> readings);
   [[nodiscard]] const LightUnknowns& known() const { return known_; }
   /// The light as the rig file has it, at level 1: receivers (points, then luxmeters) × fixtures.
-  [[nodiscard]] Eigen::MatrixXd stated_lux() const;
+  [[nodiscard]] const Eigen::MatrixXd& stated_lux() const { return stated_lux_; }
 
   /// Under these levels. Goals without light are left out.
   [[nodiscard]] GoalError error_of_goals(const Eigen::VectorXd& level) const;
@@ -56,18 +58,32 @@ class RigLight {
                                                        std::span<const double> brightest) const;
 
  private:
+  /// What the rig is found to be: mounts, and reflectances over those stated less 1.
+  struct Found {
+    std::vector<Eigen::VectorXd> mounts;
+    Eigen::VectorXd paint;
+  };
+  [[nodiscard]] Found found() const;
+  /// The largest change, as a share of what is not known before anything is measured.
+  [[nodiscard]] double apart(const Found& a, const Found& b) const;
+  [[nodiscard]] Result<void> trace_anew(const Found& at);
+  [[nodiscard]] Result<void> take_anew();
   struct Goals;
   /// The goals first among the queries.
   [[nodiscard]] Goals goals_under(const Eigen::VectorXd& level) const;
   [[nodiscard]] LightQuery asked_in_hand(std::size_t point, std::size_t fixture) const;
   [[nodiscard]] static Result<RigLight> of_light(const Session& session, const LightPriors& priors,
-                                                 TransportMatrix light, std::vector<Eigen::MatrixXd> paint);
-  RigLight(const Session& session, LightPriors priors, TransportMatrix light, std::vector<Eigen::MatrixXd> paint,
-           LightSensitivity sensitivity);
+                                                 const ComputeOptions& options, TransportMatrix light,
+                                                 std::vector<Eigen::MatrixXd> paint);
+  RigLight(const Session& session, LightPriors priors, const ComputeOptions& options, TransportMatrix light,
+           std::vector<Eigen::MatrixXd> paint, LightSensitivity sensitivity);
 
   const Session* session_;
   LightPriors priors_;
-  TransportMatrix light_;
+  ComputeOptions options_;
+  TransportMatrix light_;  ///< of the rig as in traced_at_
+  Found traced_at_;
+  Eigen::MatrixXd stated_lux_;
   std::vector<Eigen::MatrixXd> paint_;
   LightUnknowns known_;
 };
