@@ -10,6 +10,12 @@
 
 namespace luxrig {
 
+/// How a setting by hand comes and goes.
+struct ByHandTimes {
+  std::optional<double> for_s{};   ///< released then; none = by a person
+  std::optional<double> fade_s{};  ///< its own fade; none = the rig's
+};
+
 struct ByHand {
   enum class What { level, goal };
   What what = What::level;

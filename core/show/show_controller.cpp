@@ -209,7 +209,7 @@ void ShowController::State::take_look(Time now) {
   awaited.reset();
 }
 
-void ShowController::State::start_cue(Time now, std::vector<double> levels) {
+void ShowController::State::start_cue(Time now, std::vector<double> levels, std::optional<double> fade_s) {
   asked = levels;
   cue = std::move(levels);
   progress.begin();
@@ -251,17 +251,18 @@ void ShowController::State::start_cue(Time now, std::vector<double> levels) {
     progress.take_aims(correction);
     asked = std::move(correction.level);
   }
-  go_to_asked(now, std::move(present));
+  go_to_asked(now, std::move(present), fade_s);
   if (std::exchange(unsolved, false)) solve(now, SolveBeside::For::hands);
 }
 
-void ShowController::State::go_to_asked(Time now, std::vector<double> present) {
+void ShowController::State::go_to_asked(Time now, std::vector<double> present, std::optional<double> fade_s) {
   cue = estimator.within_limits(asked, now);
   std::vector<double> sent = *cue;
   lost.put_in(sent, safe_levels());
   for (std::size_t f = 0; f < sent.size(); ++f)
     if (bypassed.lamp(f)) sent[f] = (*cue)[f] = 0;
-  if (!start_lamps(now, present, sent)) fade(now, std::move(present), sent, rig.control.fade_s, rig.control.fade_curve);
+  if (!start_lamps(now, present, sent))
+    fade(now, std::move(present), sent, fade_s.value_or(rig.control.fade_s), rig.control.fade_curve);
   enter(Phase::fading, now);
 }
 

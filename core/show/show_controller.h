@@ -140,8 +140,8 @@ class ShowController {
   /// Sets levels and goals by hand. They stay until released, through corrections and later plans, within limits. The
   /// rest is solved around them at once, as far as the model knows. Blackout, failures and the safe look override them
   /// while they last. Before the first look they are only stored for it. All or none: refused with a reason if one of
-  /// them is invalid, and after go_safe.
-  Result<void> hold(Time now, std::span<const ByHand> wanted);
+  /// them is invalid, and after go_safe. fade_s: what is held fades so long; none = as the rig's looks.
+  Result<void> hold(Time now, std::span<const ByHand> wanted, std::optional<double> fade_s = {});
   /// Levels go back to their values before, goals to the plan's, and everything is solved again. Returns the number
   /// released.
   std::size_t release(Time now, std::span<const std::size_t> fixtures, std::span<const std::size_t> points);

@@ -30,9 +30,10 @@ luxrig::HttpHandlers checking_handlers() {
     if (const auto read = luxrig::plan_from_json(plan, "plan"); !read) return tl::unexpected(read.error());
     return std::string("applied");
   };
-  handlers.level = [](const std::vector<std::string>& names, double value, std::optional<double> for_s) {
+  handlers.level = [](const std::vector<std::string>& names, double value, const luxrig::ByHandTimes& times) {
     LUXRIG_CHECK(!names.empty() && !std::isnan(value), "{} names, {}", names.size(), value);
-    LUXRIG_CHECK(!for_s || (*for_s > 0 && *for_s <= 366 * 86400.0), "held for {} s", *for_s);
+    LUXRIG_CHECK(!times.for_s || (*times.for_s > 0 && *times.for_s <= 366 * 86400.0), "held for {} s", *times.for_s);
+    LUXRIG_CHECK(!times.fade_s || (*times.fade_s >= 0.1 && *times.fade_s <= 600), "fades in {} s", *times.fade_s);
     return luxrig::Result<std::string>("held");
   };
   handlers.goal = handlers.level;

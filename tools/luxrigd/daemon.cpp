@@ -333,11 +333,11 @@ HttpHandlers Daemon::handlers() {
   handlers.park = [this](const std::vector<std::string>& names) { return park(names); };
   handlers.hand_back = [this] { on_control_thread([this](Time at) { controller_.hand_back(at); }); };
   handlers.apply = [this](const std::string& plan_json) { return apply_json(plan_json); };
-  handlers.level = [this](const std::vector<std::string>& names, double level, std::optional<double> for_s) {
-    return hold(ByHand::What::level, names, level, for_s);
+  handlers.level = [this](const std::vector<std::string>& names, double level, const ByHandTimes& times) {
+    return hold(ByHand::What::level, names, level, times);
   };
-  handlers.goal = [this](const std::vector<std::string>& names, double lux, std::optional<double> for_s) {
-    return hold(ByHand::What::goal, names, lux, for_s);
+  handlers.goal = [this](const std::vector<std::string>& names, double lux, const ByHandTimes& times) {
+    return hold(ByHand::What::goal, names, lux, times);
   };
   handlers.release = [this](const std::vector<std::string>& names) { return release(names); };
   handlers.bypass = [this](const std::vector<std::string>& names, bool on) { return bypass(names, on); };

@@ -119,7 +119,7 @@ class Daemon {
   Result<void> identify(const std::string& name, double seconds);
   Result<void> park(const std::vector<std::string>& names);
   Result<std::string> hold(ByHand::What what, const std::vector<std::string>& names, double value,
-                           std::optional<double> for_s);
+                           const ByHandTimes& times);
   Result<std::string> release(const std::vector<std::string>& names);
   Result<std::string> bypass(const std::vector<std::string>& names, bool on);
   void restore_bypassed(const std::vector<std::string>& saved, Resumed& resumed);

@@ -270,7 +270,7 @@ std::vector<SavedByHand> Daemon::held_by_hand(const Rig& rig, Time at) const {
 }
 
 Result<std::string> Daemon::hold(ByHand::What what, const std::vector<std::string>& names, double value,
-                                 std::optional<double> for_s) {
+                                 const ByHandTimes& times) {
   const std::lock_guard one_at_a_time(change_mutex_);
   const std::shared_ptr<const Session> session = this->session();
   auto wanted = what == ByHand::What::level ? luxrig::fixtures_called(session->rig, names)
@@ -282,14 +282,14 @@ Result<std::string> Daemon::hold(ByHand::What what, const std::vector<std::strin
     std::vector<SavedByHand> all;
   };
   const auto held =
-      ask_control_thread<Held>([this, &rig = session->rig, session, wanted = *wanted, value, for_s](Time at) -> Held {
+      ask_control_thread<Held>([this, &rig = session->rig, session, wanted = *wanted, value, times](Time at) -> Held {
         std::vector<ByHand> timed = wanted;
         for (ByHand& one : timed) {
           one.value = value;
           one.since = at;
-          if (for_s) one.until = at + from_seconds(*for_s);
+          if (times.for_s) one.until = at + from_seconds(*times.for_s);
         }
-        Held out{controller_.hold(at, timed), {}, {}};
+        Held out{controller_.hold(at, timed, times.fade_s), {}, {}};
         if (!out.done) return out;
         std::vector<ByHand> fresh = controller_.status(at).by_hand;
         std::erase_if(fresh, [&](const ByHand& one) { return one.since != at; });

@@ -17,7 +17,7 @@ constexpr double kSameLevel = 1e-3;
 
 }  // namespace
 
-Result<void> ShowController::State::hold(Time now, std::span<const ByHand> wanted) {
+Result<void> ShowController::State::hold(Time now, std::span<const ByHand> wanted, std::optional<double> fade_s) {
   if (asked_safe) return refusal("the show has ended in its safe look: apply a plan first");
   for (const ByHand& one : wanted) {
     const bool level = one.what == ByHand::What::level;
@@ -26,7 +26,7 @@ Result<void> ShowController::State::hold(Time now, std::span<const ByHand> wante
       return refusal(fmt::format("{}: {}", level ? rig.fixtures[one.index].name : rig.points[one.index].name, wrong));
   }
   hands.set(rig, wanted);
-  start_with_hands(now);
+  start_with_hands(now, fade_s);
   return {};
 }
 
@@ -76,10 +76,11 @@ void ShowController::State::tell_estimator() {
   tell_lost_lamps();
 }
 
-void ShowController::State::start_with_hands(Time now) {
+void ShowController::State::start_with_hands(Time now, std::optional<double> fade_s) {
   unsolved = true;
+  hands_fade_s = fade_s;
   tell_estimator();
-  if (cue) start_cue(now, with_hands(hands.levels_without()));
+  if (cue) start_cue(now, with_hands(hands.levels_without()), fade_s);
 }
 
 std::vector<double> ShowController::State::with_hands(std::vector<double> levels) const {
@@ -122,9 +123,9 @@ std::string ShowController::State::why_not(Time now, const ByHand& held) const {
              : fmt::format("the limit of point {} wins: {:.3f} is the most", limits, program.to_level[held.index]);
 }
 
-Result<void> ShowController::hold(Time now, std::span<const ByHand> wanted) {
+Result<void> ShowController::hold(Time now, std::span<const ByHand> wanted, std::optional<double> fade_s) {
   now = state_->at_least_last(now);
-  return state_->hold(now, wanted);
+  return state_->hold(now, wanted, fade_s);
 }
 
 std::size_t ShowController::release(Time now, std::span<const std::size_t> fixtures,

@@ -102,7 +102,7 @@ void ShowController::State::take_solved(Time now) {
     }
     asked = std::move(solved.correction.level);
     progress.take_aims(solved.correction);
-    return go_to_asked(now, present_levels(now, false));
+    return go_to_asked(now, present_levels(now, false), hands_fade_s);
   }
   if (!holds || (phase != Phase::measuring && phase != Phase::holding)) return;
   if (solved.what == SolveBeside::For::round) return correct_or_hold(now, std::move(solved.correction));

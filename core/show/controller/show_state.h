@@ -85,15 +85,16 @@ struct ShowController::State {
   HandSettings hands;
   Look planned;                        ///< the look in force as planned: goals, limits and weights of all points
   std::vector<Point> points_in_force;  ///< the rig's points, with goals, limits and weights in force
+  std::optional<double> hands_fade_s;  ///< of the last setting or release; none = the rig's
   bool unsolved = false;               ///< a setting by hand is newer than the levels in force
-  [[nodiscard]] Result<void> hold(Time now, std::span<const ByHand> wanted);
+  [[nodiscard]] Result<void> hold(Time now, std::span<const ByHand> wanted, std::optional<double> fade_s);
   std::size_t release(Time now, std::span<const std::size_t> fixtures, std::span<const std::size_t> points);
   void release_what_is_over(Time now);
   void take_points(const Look& look);
   void take_levels_of_plan(Time now, const std::vector<double>& levels, const Look& look);
   /// Passes goals, limits, held and lost fixtures to the estimator.
   void tell_estimator();
-  void start_with_hands(Time now);
+  void start_with_hands(Time now, std::optional<double> fade_s = {});
   /// The levels, with those held by hand put in.
   [[nodiscard]] std::vector<double> with_hands(std::vector<double> levels) const;
   [[nodiscard]] std::string why_not(Time now, const ByHand& held) const;
@@ -115,8 +116,9 @@ struct ShowController::State {
   [[nodiscard]] std::vector<double> present_levels(Time now, bool under_ceilings = true) const;
   void fade(Time now, std::vector<double> from, std::vector<double> to, double seconds, FadeCurve curve);
   void guard(Time now, const std::vector<double>& from, const std::vector<double>& to);
-  void start_cue(Time now, std::vector<double> levels);
-  void go_to_asked(Time now, std::vector<double> present);
+  /// fade_s: none = the rig's.
+  void start_cue(Time now, std::vector<double> levels, std::optional<double> fade_s = {});
+  void go_to_asked(Time now, std::vector<double> present, std::optional<double> fade_s = {});
   [[nodiscard]] std::vector<double> wanted_levels(std::span<const double> levels) const;
   [[nodiscard]] bool turns(std::size_t fixture) const;  ///< the awaited look turns it
   void take_look(Time now);

@@ -192,6 +192,25 @@ TEST(ByHand, OpenLoopTheModelSolvesTheRestAndAReleaseRestoresLevels) {
               40, 1);
 }
 
+TEST(ByHand, FadesAsSlowlyAsAsked) {
+  for (const double fade_s : {0.2, 5.0}) {
+    HandShow show;
+    show.show->apply(show.now(), std::vector<double>{0.36, 0.36, 0.0});
+    show.run(10);
+    const double before = show.levels()[1];
+    ASSERT_TRUE(show.show->hold(show.now(), std::vector{level_by_hand(1, 0.9)}, fade_s));
+    show.run(fade_s / 2);
+    EXPECT_GT(show.levels()[1], before + 0.1) << fade_s;
+    EXPECT_LT(show.levels()[1], 0.8) << fade_s;
+    show.run(fade_s / 2 + 0.05);
+    EXPECT_NEAR(show.levels()[1], 0.9, 1e-9) << fade_s;
+    // Going back is a look of the rig again.
+    show.show->release(show.now(), std::vector<std::size_t>{1}, {});
+    show.run(0.3);
+    EXPECT_GT(show.levels()[1], before + 0.1) << fade_s;
+  }
+}
+
 TEST(ByHand, ExpiresByItselfAfterItsTime) {
   HandShow show;
   show.show->apply(show.now(), std::vector<double>{0.36, 0.36, 0.0});

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <limits>
 #include <memory>
 
 #include "tools/http/json_body.h"
@@ -11,6 +12,7 @@ namespace {
 
 constexpr double kIdentifyFor_s = 5, kIdentifyAtMost_s = 60;
 constexpr double kLongestByHand_s = 366.0 * 86400;
+constexpr double kShortestFade_s = 0.1, kLongestFade_s = 600;
 constexpr std::size_t kMaxPlanBytes = 16u << 20;
 
 /// A non-empty list of strings; nullopt if it is anything else.
@@ -48,22 +50,27 @@ HttpResponse checked_answer(const Checked<std::string>& done, const char* key) {
 struct Routes {
   HttpHandlers handlers;
 
-  using ByHandHandler =
-      std::function<Result<std::string>(const std::vector<std::string>&, double, std::optional<double>)>;
+  using ByHandHandler = std::function<Result<std::string>(const std::vector<std::string>&, double, const ByHandTimes&)>;
   static HttpResponse by_hand(const HttpRequest& request, const char* names_key, const char* value_key,
                               const ByHandHandler& handler) {
     const auto body = json_body(request.body);
     const auto names = names_in(body, names_key);
-    const bool timed = body.is_object() && body.contains("for_s");
+    // none = absent or right
+    const auto wrong = [&](const char* key, double least, double most) {
+      return body.contains(key) && !(body[key].is_number() && body[key] >= least && body[key] <= most);
+    };
     if (!names || !body.contains(value_key) || !body[value_key].is_number() ||
-        (timed && !(body["for_s"].is_number() && body["for_s"] > 0 && body["for_s"] <= kLongestByHand_s))) {
-      return http_refusal(
-          400, fmt::format("send {{\"{}\": [\"a name\"], \"{}\": a number}}, and with \"for_s\" above 0 for how long",
-                           names_key, value_key));
+        wrong("for_s", std::numeric_limits<double>::min(), kLongestByHand_s) ||
+        wrong("fade_s", kShortestFade_s, kLongestFade_s)) {
+      return http_refusal(400,
+                          fmt::format("send {{\"{}\": [\"a name\"], \"{}\": a number}}, and with \"for_s\" above 0 "
+                                      "for how long, with \"fade_s\" from {} to {} how slowly",
+                                      names_key, value_key, kShortestFade_s, kLongestFade_s));
     }
-    return done_answer(handler(*names, body[value_key].get<double>(),
-                               timed ? std::optional(body["for_s"].get<double>()) : std::nullopt),
-                       "held");
+    const auto seconds = [&](const char* key) {
+      return body.contains(key) ? std::optional(body[key].get<double>()) : std::nullopt;
+    };
+    return done_answer(handler(*names, body[value_key].get<double>(), {seconds("for_s"), seconds("fade_s")}), "held");
   }
 
   [[nodiscard]] HttpResponse blackout(const HttpRequest& request) const {

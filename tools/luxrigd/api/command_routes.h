@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/result.h"
+#include "core/show/by_hand.h"
 #include "tools/http/server.h"
 
 namespace luxrig {
@@ -25,12 +26,10 @@ struct HttpHandlers {
   std::function<void()> hand_back;  ///< gives the light to desks that wait for it
   /// Returns notes for a person, in lines; empty if there are none.
   std::function<Checked<std::string>(const std::string& plan_json)> apply;
-  /// Set by hand until released, or for `for_s` seconds. Names may contain * and ?. Returns text for a person.
-  std::function<Result<std::string>(const std::vector<std::string>& fixtures, double level,
-                                    std::optional<double> for_s)>
+  /// Set by hand. Names may contain * and ?. Returns text for a person.
+  std::function<Result<std::string>(const std::vector<std::string>& fixtures, double level, const ByHandTimes& times)>
       level;
-  std::function<Result<std::string>(const std::vector<std::string>& points, double lux, std::optional<double> for_s)>
-      goal;
+  std::function<Result<std::string>(const std::vector<std::string>& points, double lux, const ByHandTimes& times)> goal;
   /// Fixtures and points; empty list = all.
   std::function<Result<std::string>(const std::vector<std::string>& names)> release;
   /// Takes these fixtures and luxmeters out of the show, or back in. Returns the risks, in lines.

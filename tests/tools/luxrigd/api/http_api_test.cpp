@@ -75,9 +75,10 @@ class HttpApiTest : public ::testing::Test {
       return {};
     };
     handlers.level = [this](const std::vector<std::string>& names, double value,
-                            std::optional<double> for_s) -> Result<std::string> {
+                            const ByHandTimes& times) -> Result<std::string> {
       if (names[0] == "nobody") return refusal("there is no nobody");
-      held += fmt::format("{}={}/{} ", fmt::join(names, "+"), value, for_s.value_or(-1));
+      held += fmt::format("{}={}/{} ", fmt::join(names, "+"), value, times.for_s.value_or(-1));
+      if (times.fade_s) held += fmt::format("in {} ", *times.fade_s);
       return std::string("held");
     };
     handlers.goal = handlers.level;
@@ -160,6 +161,7 @@ TEST_F(HttpApiTest, SetsByHandAndReleases) {
   for (const auto& [route, body] : {
            std::pair{"/api/level", R"({"fixtures":["a","b*"],"level":0.05})"},
            std::pair{"/api/level", R"({"fixtures":["a"],"level":1,"for_s":600})"},
+           std::pair{"/api/level", R"({"fixtures":["a"],"level":1,"fade_s":0.2})"},
            std::pair{"/api/goal", R"({"points":["p"],"goal_lux":150})"},
            std::pair{"/api/release", R"({"names":["p"]})"},
            std::pair{"/api/release", R"({"all":true})"},
@@ -167,7 +169,7 @@ TEST_F(HttpApiTest, SetsByHandAndReleases) {
            std::pair{"/api/bypass", R"({"names":["m"],"on":false})"},
        })
     EXPECT_NE(ask(port, post(route, body, kJson)).find(" 200 "), std::string::npos) << route << body;
-  EXPECT_EQ(held, "a+b*=0.05/-1 a=1/600 p=150/-1 -p - bypass m+s* undo m ");
+  EXPECT_EQ(held, "a+b*=0.05/-1 a=1/600 a=1/-1 in 0.2 p=150/-1 -p - bypass m+s* undo m ");
   held.clear();
   for (const auto& [route, body] : {
            std::pair{"/api/level", R"({"fixtures":[],"level":0.05})"},
@@ -176,6 +178,8 @@ TEST_F(HttpApiTest, SetsByHandAndReleases) {
            std::pair{"/api/level", R"({"fixtures":["a"]})"},
            std::pair{"/api/level", R"({"fixtures":["a"],"level":0.1,"for_s":0})"},
            std::pair{"/api/level", R"({"fixtures":["a"],"level":0.1,"for_s":1e300})"},
+           std::pair{"/api/level", R"({"fixtures":["a"],"level":0.1,"fade_s":0})"},
+           std::pair{"/api/level", R"({"fixtures":["a"],"level":0.1,"fade_s":1e9})"},
            std::pair{"/api/level", R"({"fixtures":["nobody"],"level":0.1})"},
            std::pair{"/api/goal", R"({"fixtures":["a"],"goal_lux":3})"},
            std::pair{"/api/release", "{}"},
