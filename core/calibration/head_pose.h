@@ -12,7 +12,7 @@
 #include <cmath>
 #include <optional>
 
-#include "core/rig/frames.h"
+#include "core/rig/joint_map.h"
 
 namespace luxrig {
 
@@ -24,12 +24,6 @@ inline constexpr int kHeadPanScale = 8, kHeadTiltScale = 9;
 inline constexpr int kHeadPanPlay = 10, kHeadTiltPlay = 11;  ///< [rad]
 inline constexpr int kHeadParameters = 12;
 using HeadVector = Eigen::Matrix<double, kHeadParameters, 1>;
-
-/// From which side each joint comes to where it is sent: 1 from below, its command grew; -1 from above.
-struct Approach {
-  int pan = 1, tilt = 1;
-  bool operator==(const Approach&) const = default;
-};
 
 struct HeadPose {
   Pose stated;  ///< world_from_mount of the rig file

@@ -17,6 +17,7 @@ using Json = nlohmann::json;
 
 constexpr const char* kRemedy = "measure the rig again with luxrig calibrate";
 /// Farther off, the rig file describes another lamp, another paint or another place.
+constexpr double kMostScale = 4, kMostAskew_deg = 20, kMostSpeed_deg_s = 2000, kMostSettling_s = 60;
 constexpr double kMostRatio = 10, kMostOffset_m = 5, kMostTurn_deg = 180;
 
 /// A lamp lights a point if it gives this share of the brightest that it gives. Its light is never known better than the
@@ -47,6 +48,93 @@ Vec3 within(const JsonReader& reader, const Json& json, const std::string& path,
   reader.problem(fmt::format("{}/{} is [{}, {}, {}]", path, key, value.x(), value.y(), value.z()),
                  fmt::format("give three numbers from {} to {}", -most, most));
   return Vec3::Zero();
+}
+
+Known number_of(const JsonReader& reader, const Json& json, const std::string& path, const char* key, double least,
+                double most) {
+  const auto pair = reader.pair(json, path, key);
+  if (!pair) return {};
+  if (pair->x() >= least && pair->x() <= most && pair->y() >= 0 && pair->y() <= most - least)
+    return {pair->x(), pair->y()};
+  reader.problem(fmt::format("{}/{} is [{}, {}]", path, key, pair->x(), pair->y()),
+                 fmt::format("give a number from {} to {} and its standard error", least, most));
+  return {};
+}
+
+Known scale_of(const JsonReader& reader, const Json& json, const std::string& path, const char* key) {
+  const auto pair = reader.pair(json, path, key);
+  if (pair && std::abs(pair->x()) >= 1 / kMostScale && std::abs(pair->x()) <= kMostScale && pair->y() >= 0 &&
+      pair->y() <= kMostScale)
+    return {pair->x(), pair->y()};
+  if (pair || !json.contains(key))
+    reader.problem(fmt::format("{}/{} is missing, next to 0, or too large", path, key), kRemedy);
+  return {1, 0};
+}
+
+std::optional<CalibratedHead> head_of(const JsonReader& reader, const Json& json, const std::string& fixture_path) {
+  const Json* entry = reader.member(json, fixture_path, "head", false);
+  if (!entry) return std::nullopt;
+  if (!entry->is_object()) {
+    reader.wrong_type(fixture_path, "head", "an object in braces", *entry);
+    return std::nullopt;
+  }
+  const std::string path = fixture_path + "/head";
+  CalibratedHead head;
+  reader.read_yes_no(*entry, path, "upside_down", head.upside_down);
+  head.pan_scale = scale_of(reader, *entry, path, "pan_scale");
+  head.tilt_scale = scale_of(reader, *entry, path, "tilt_scale");
+  head.tilt_zero_deg = number_of(reader, *entry, path, "tilt_zero_deg", -kMostAskew_deg, kMostAskew_deg);
+  head.askew_deg = number_of(reader, *entry, path, "askew_deg", -kMostAskew_deg, kMostAskew_deg);
+  head.pan_backlash_deg = number_of(reader, *entry, path, "pan_backlash_deg", -kMostAskew_deg, kMostAskew_deg);
+  head.tilt_backlash_deg = number_of(reader, *entry, path, "tilt_backlash_deg", -kMostAskew_deg, kMostAskew_deg);
+  head.pan_speed_deg_s = number_of(reader, *entry, path, "pan_speed_deg_s", 0, kMostSpeed_deg_s);
+  head.tilt_speed_deg_s = number_of(reader, *entry, path, "tilt_speed_deg_s", 0, kMostSpeed_deg_s);
+  head.settling_s = number_of(reader, *entry, path, "settling_s", 0, kMostSettling_s);
+  return head;
+}
+
+Json json_of(const CalibratedHead& head) {
+  Json json;
+  json["upside_down"] = head.upside_down;
+  json["pan_scale"] = pair_of(head.pan_scale);
+  json["tilt_scale"] = pair_of(head.tilt_scale);
+  json["tilt_zero_deg"] = pair_of(head.tilt_zero_deg);
+  json["askew_deg"] = pair_of(head.askew_deg);
+  json["pan_backlash_deg"] = pair_of(head.pan_backlash_deg);
+  json["tilt_backlash_deg"] = pair_of(head.tilt_backlash_deg);
+  for (const auto& [key, measured] : {std::pair{"pan_speed_deg_s", head.pan_speed_deg_s},
+                                      {"tilt_speed_deg_s", head.tilt_speed_deg_s},
+                                      {"settling_s", head.settling_s}})
+    if (measured.standard_error > 0) json[key] = pair_of(measured);
+  return json;
+}
+
+/// Puts the head where it was found to hang. Its joints are true ones from then on.
+void turn_as_found(const CalibratedHead& head, Fixture& fixture) {
+  if (head.upside_down) fixture.world_from_mount.rotation *= Vec3(1, -1, -1).asDiagonal();
+  JointMap map;
+  map.pan_scale = head.pan_scale.value;
+  map.tilt_scale = head.tilt_scale.value;
+  map.pan_play_rad = rad_from_deg(head.pan_backlash_deg.value);
+  map.tilt_play_rad = rad_from_deg(head.tilt_backlash_deg.value);
+  map.askew_x = std::tan(rad_from_deg(head.askew_deg.value));
+  map.askew_y = std::tan(rad_from_deg(head.tilt_zero_deg.value));
+  map.sent = fixture.range;
+  fixture.range = map.reach();
+  const auto within = [&](Joints joints) {
+    joints = map.reached_by(joints, {});
+    joints.pan_rad = std::clamp(joints.pan_rad, fixture.range.pan_min_rad, fixture.range.pan_max_rad);
+    joints.tilt_rad = std::clamp(joints.tilt_rad, fixture.range.tilt_min_rad, fixture.range.tilt_max_rad);
+    return joints;
+  };
+  fixture.joints = within(fixture.joints);
+  if (fixture.park) fixture.park = within(*fixture.park);
+  const auto speed_rad_s = [](double stated_rad_s, const Known& measured_deg_s, double scale) {
+    return measured_deg_s.standard_error > 0 ? rad_from_deg(measured_deg_s.value) : stated_rad_s * std::abs(scale);
+  };
+  fixture.pan_speed_rad_s = speed_rad_s(fixture.pan_speed_rad_s, head.pan_speed_deg_s, map.pan_scale);
+  fixture.tilt_speed_rad_s = speed_rad_s(fixture.tilt_speed_rad_s, head.tilt_speed_deg_s, map.tilt_scale);
+  fixture.joint_map = map;
 }
 
 MeasuredCurve curve_of(const JsonReader& reader, const Json& json, const std::string& path) {
@@ -120,6 +208,7 @@ std::string to_json(const Calibration& calibration) {
     entry["offset_error_m"] = triple_of(fixture.offset_error_m);
     entry["turn_deg"] = triple_of(fixture.turn_deg);
     entry["turn_error_deg"] = triple_of(fixture.turn_error_deg);
+    if (fixture.head) entry["head"] = json_of(*fixture.head);
     if (fixture.curve.empty()) continue;
     entry["curve_error"] = fixture.curve_error;
     for (const auto& [level, share] : fixture.curve) entry["curve"].push_back(Json::array({level, share}));
@@ -152,6 +241,7 @@ Checked<Calibration> calibration_from_json(const std::string& text, const std::s
     fixture.offset_error_m = within(reader, entry, path, "offset_error_m", kMostOffset_m).cwiseAbs();
     fixture.turn_deg = within(reader, entry, path, "turn_deg", kMostTurn_deg);
     fixture.turn_error_deg = within(reader, entry, path, "turn_error_deg", kMostTurn_deg).cwiseAbs();
+    fixture.head = head_of(reader, entry, path);
     fixture.curve = curve_of(reader, entry, path);
     fixture.curve_error = reader.optional_number(entry, path, "curve_error").value_or(0);
     calibration.fixtures.push_back(std::move(fixture));
@@ -191,6 +281,7 @@ Checked<Rig> calibrated(Rig rig, const Calibration& calibration, const std::stri
       continue;
     }
     fixture->world_from_mount = displaced(fixture->world_from_mount, found.offset_m, found.turn_deg * (kPi / 180));
+    if (found.head && fixture->moves) turn_as_found(*found.head, *fixture);
     fixture->measured_curve = found.curve;
     fixture->known_to = error_of(calibration, found);
     if (fixture->moves && fixture->aim_world_m) {

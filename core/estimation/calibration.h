@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,12 +20,23 @@ struct Known {
   friend bool operator==(const Known&, const Known&) = default;
 };
 
+/// How a head turns (core/rig/joint_map.h). The zero of its pan is in the turn of its mount.
+struct CalibratedHead {
+  bool upside_down = false;                 ///< over the rig file
+  Known pan_scale{1, 0}, tilt_scale{1, 0};  ///< true over sent; negative: it turns the other way
+  Known tilt_zero_deg{}, askew_deg{};       ///< how its beam lies in its lamp: along the tilt, and across
+  Known pan_backlash_deg{}, tilt_backlash_deg{};
+  Known pan_speed_deg_s{}, tilt_speed_deg_s{};  ///< 0 = not measured
+  Known settling_s{};                           ///< from its stated arrival until its beam stands still
+};
+
 struct CalibratedFixture {
   std::string name;
   Known output{1, 0};  ///< true over rated flux, > 0
   /// How its mount hangs off the rig file's place, along and about world x, y, z. Emitters of one housing hang together.
   Vec3 offset_m = Vec3::Zero(), offset_error_m = Vec3::Zero();
   Vec3 turn_deg = Vec3::Zero(), turn_error_deg = Vec3::Zero();
+  std::optional<CalibratedHead> head{};  ///< then its mount is known by it
   MeasuredCurve curve{};   ///< empty = the rig file's is right
   double curve_error = 0;  ///< standard error of a share, relative
 };

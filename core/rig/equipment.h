@@ -12,6 +12,7 @@
 #include "core/photometry/intensity.h"
 #include "core/photometry/shapes/luminous_shape.h"
 #include "core/rig/frames.h"
+#include "core/rig/joint_map.h"
 #include "core/rig/patch.h"
 
 namespace luxrig {
@@ -76,6 +77,7 @@ struct Fixture {
   double roll_rad = 0;
   bool moves = false;                                ///< has pan and tilt slots, or axes; perhaps a zoom slot
   JointRange range;                                  ///< only if it moves
+  std::optional<JointMap> joint_map{};               ///< by a calibration; none = what is sent is where it turns
   double pan_speed_rad_s = 0, tilt_speed_rad_s = 0;  ///< only if it moves, > 0
   double zoom_speed_rad_s = 0;                       ///< of the beam angle; only if it zooms, > 0
   std::size_t bus = 0;
@@ -93,6 +95,8 @@ struct Fixture {
   double reset_s = 0;                ///< how long it homes after power-on; only if it moves
   FilePosition in_file;
 
+  /// Of what may be sent. Everything else deals in true joints, whose range is `range`.
+  [[nodiscard]] const JointRange& sent_range() const { return joint_map ? joint_map->sent : range; }
   [[nodiscard]] Pose world_from_lamp() const { return world_from_lamp(joints); }
   [[nodiscard]] Pose world_from_lamp(const Joints& at) const {
     return luxrig::world_from_lamp(world_from_mount, at, roll_rad);

@@ -56,7 +56,7 @@ class CanopenDriver final : public Driver, public Mover {
     for (std::size_t i = 0; i < rig.fixtures.size(); ++i) {
       const Fixture& fixture = rig.fixtures[i];
       if (!fixture.axes || fixture.axes->bus != bus) continue;
-      ranges_.emplace(i, fixture.range);
+      ranges_.emplace(i, fixture.sent_range());
       if (fixture.housing.value_or(i) != i) continue;  // the first light of a housing turns it
       heads_.push_back(
           {i, HeadAxes(fixture, options_), LifeRecord(pan_axis_name(fixture)), LifeRecord(tilt_axis_name(fixture))});

@@ -80,8 +80,8 @@ std::vector<Problem> check_canopen(const Rig& rig, std::size_t bus) {
                axis.node == master ? "give the drive another node number, or the bus another master_node"
                                    : "choose a node in 1…127");
       }
-      const double travel = std::max(std::abs(axis.counts_at(fixture.range.pan_max_rad)),
-                                     std::abs(axis.counts_at(fixture.range.pan_min_rad)));
+      const double travel = std::max(std::abs(axis.counts_at(fixture.sent_range().pan_max_rad)),
+                                     std::abs(axis.counts_at(fixture.sent_range().pan_min_rad)));
       if (!(travel < 2e9)) {
         report(fixture.in_file,
                fmt::format("fixture \"{}\": its travel is {:.3g} counts, more than a position of 32 bit holds",

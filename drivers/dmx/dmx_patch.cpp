@@ -67,11 +67,11 @@ DmxPatchbay::DmxPatchbay(const Rig& rig, std::size_t bus) : bus_(rig.buses[bus].
     Entry entry;
     entry.name = fixture.name;
     entry.patch = std::get<DmxPatch>(fixture.patch);
-    entry.range = fixture.range;
+    entry.range = fixture.sent_range();
     entry.moves = fixture.moves && (!fixture.axes || fixture.range.zooms());  // the zoom of a head on axes is here
     for (const DmxSlot& slot : entry.patch.slots) entry.bytes.push_back(bytes_of_value(entry.patch, slot));
     entry.universe = static_cast<std::size_t>(std::distance(numbers.begin(), numbers.find(entry.patch.universe)));
-    entry.joints = fixture.joints;
+    entry.joints = fixture.joint_map ? fixture.joint_map->sent_for(fixture.joints, {}) : fixture.joints;
     has_heads_ = has_heads_ || entry.moves;
     encode(entry);
     entries_.emplace(i, std::move(entry));

@@ -16,6 +16,8 @@ namespace {
 constexpr int kOutputPriority = 50;
 constexpr Duration kHealthPeriod = std::chrono::milliseconds(200);
 constexpr std::size_t kMaxUnsentReadings = 1000;
+/// A desk does not say from which side a head comes.
+constexpr Approach kBetween{0, 0};
 constexpr Duration kDarkAgain = std::chrono::milliseconds(5);
 
 }  // namespace
@@ -40,6 +42,7 @@ BusThread::BusThread(const Rig& rig, std::size_t bus, std::unique_ptr<Driver> dr
     const bool zooms_here = fixture.axes && fixture.range.zooms() && fixture.bus == bus;
     if (fixture.moves && (fixture.motion_bus() == bus || zooms_here)) aim_commands_.push_back({i, fixture.joints});
   }
+  senders_.resize(aim_commands_.size());
   writes_ = (driver_->level_output() != nullptr && !level_commands_.empty()) ||
             (driver_->mover() != nullptr && !aim_commands_.empty());
   if (LevelInput* input = driver_->level_input()) desks_ = input->parts().size();
@@ -140,7 +143,12 @@ void BusThread::listen(Time at) {
   if (input == nullptr) return;
   const std::span<const DeskFrame> frames = input->listen(at);
   const std::unique_lock lock(mutex_, std::try_to_lock);
-  if (lock) desk_frames_.assign(frames.begin(), frames.end());
+  if (!lock) return;
+  desk_frames_.assign(frames.begin(), frames.end());
+  for (DeskFrame& frame : desk_frames_)
+    for (DeskCommand& command : frame.commands)
+      if (const auto& map = rig_.fixtures[command.fixture].joint_map; map && command.joints)
+        command.joints = map->reached_by(*command.joints, kBetween);
 }
 
 void BusThread::write(Time at) {
@@ -164,10 +172,7 @@ void BusThread::write(Time at) {
   for (LevelCommand& command : level_commands_) {
     command.drive = drive_for(rig_.fixtures[command.fixture], levels_[command.fixture]);
   }
-  if (program_.revision != 0) {
-    program_.joints_at(at, joints_);
-    for (AimCommand& command : aim_commands_) command.joints = joints_[command.fixture];
-  }
+  if (program_.revision != 0) aim(at);
   if (LevelInput* input = driver_->level_input()) {
     for (std::size_t part = 0; part < desks_ && first_desk_ + part < program_.desks.size(); ++part) {
       // In a blackout we also send, dark, the lamps that a desk drives itself.
@@ -180,6 +185,16 @@ void BusThread::write(Time at) {
   if (output == nullptr) return;
   const bool written = output->write(at, level_commands_).has_value() && output->settled();
   if (written && dark) dark_order_.store(order, std::memory_order_release);
+}
+
+/// The only place where true joints become those that are sent.
+void BusThread::aim(Time at) {
+  program_.joints_at(at, joints_);
+  for (std::size_t k = 0; k < aim_commands_.size(); ++k) {
+    AimCommand& command = aim_commands_[k];
+    const std::optional<JointMap>& map = rig_.fixtures[command.fixture].joint_map;
+    command.joints = map ? senders_[k].send(*map, joints_[command.fixture]) : joints_[command.fixture];
+  }
 }
 
 void BusThread::read(Time at) {

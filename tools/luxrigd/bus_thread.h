@@ -70,6 +70,7 @@ class BusThread {
   void pause_until(Time wake_at);
   [[nodiscard]] bool is_to_be_dark() const;
   void write(Time at);
+  void aim(Time at);
   void listen(Time at);
   void read(Time at);
   void look_at_contact(Time at);
@@ -96,6 +97,7 @@ class BusThread {
   std::vector<Joints> joints_;                ///< of all fixtures
   std::vector<LevelCommand> level_commands_;  ///< fixtures whose lamp is on this bus
   std::vector<AimCommand> aim_commands_;      ///< fixtures that this bus turns or zooms
+  std::vector<JointSender> senders_;          ///< per aim command
   OutputProgram program_;
   SmoothReturn return_;
 

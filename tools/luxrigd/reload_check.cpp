@@ -85,6 +85,7 @@ const char* output_key_that_differs(const Fixture& a, const Fixture& b) {
   if (a.measured_curve != b.measured_curve) return "its dimmer's measured curve (calibration.json)";
   if (a.switched != b.switched) return "switched";
   if (a.moves != b.moves || !same(a.range, b.range)) return "the range of its pan, tilt or zoom";
+  if (a.joint_map != b.joint_map) return "how its head turns (calibration.json)";
   if (a.pan_speed_rad_s != b.pan_speed_rad_s || a.tilt_speed_rad_s != b.tilt_speed_rad_s ||
       a.zoom_speed_rad_s != b.zoom_speed_rad_s || a.reset_s != b.reset_s)
     return "its speeds";

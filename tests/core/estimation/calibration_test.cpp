@@ -27,6 +27,15 @@ Calibration example() {
   lamp.curve_error = 0.01;
   CalibratedFixture spot;
   spot.name = "spot";
+  CalibratedHead& head = spot.head.emplace();
+  head.upside_down = true;
+  head.pan_scale = {-0.857, 0.001};
+  head.tilt_scale = {1.002, 0.001};
+  head.tilt_zero_deg = {-1.5, 0.05};
+  head.askew_deg = {0.7, 0.05};
+  head.pan_backlash_deg = {0.9, 0.02};
+  head.tilt_backlash_deg = {1.1, 0.02};
+  head.settling_s = {0.4, 0.1};
   calibration.fixtures = {lamp, spot};
   calibration.materials = {{"plaster, white", {0.93, 0.02}}};
   calibration.luxmeters = {{"meter", {1.01, 0.004}}};
@@ -56,6 +65,12 @@ TEST(Calibration, IsTheSameAfterItsFile) {
   EXPECT_EQ(read->fixtures[1].output, (Known{1.07, 0.012}));
   EXPECT_EQ(read->fixtures[1].turn_deg, example().fixtures[0].turn_deg);
   EXPECT_EQ(read->fixtures[1].curve, example().fixtures[0].curve);
+  ASSERT_TRUE(read->fixtures[0].head);
+  EXPECT_TRUE(read->fixtures[0].head->upside_down);
+  EXPECT_EQ(read->fixtures[0].head->pan_scale, (Known{-0.857, 0.001}));
+  EXPECT_EQ(read->fixtures[0].head->settling_s, (Known{0.4, 0.1}));
+  EXPECT_EQ(read->fixtures[0].head->pan_speed_deg_s, Known{}) << "not measured";
+  EXPECT_FALSE(read->fixtures[1].head);
   EXPECT_EQ(read->made_for, example().made_for);
   ASSERT_EQ(read->lights.size(), 2u);
   EXPECT_EQ(read->lights[0].lux, (Known{410, 6}));
@@ -66,7 +81,11 @@ TEST(Calibration, SaysWhereAndWhatIsWrong) {
   EXPECT_EQ(refused(with(R"({"output": [0, 0.01]})")).find("c.json:2:"), 0u) << refused(with(R"({"output": [0, 1]})"));
   for (const char* wrong :
        {"{}", "7", R"({"output": 1})", R"({"output": [1, -0.1]})", R"({"output": [1e400, 0]})",
-        R"({"output": [99, 0]})", R"({"output": [1, 0], "offset_m": [1, 2]})",
+        R"({"output": [99, 0]})", R"({"output": [1, 0], "offset_m": [1, 2]})", R"({"output": [1, 0], "head": 1})",
+        R"({"output": [1, 0], "head": {}})",
+        R"({"output": [1, 0], "head": {"pan_scale": [0, 0.1], "tilt_scale": [1, 0]}})",
+        R"({"output": [1, 0], "head": {"pan_scale": [1, 0], "tilt_scale": [1, 0], "askew_deg": [50, 0]}})",
+        R"({"output": [1, 0], "head": {"pan_scale": [1, 0], "tilt_scale": [1, 0], "upside_down": "no"}})",
         R"({"output": [1, 0], "offset_m": [0, 0, 9]})", R"({"output": [1, 0], "turn_deg": [0, 0, 400]})",
         R"({"output": [1, 0], "curve": [[0.5, 0.4]]})", R"({"output": [1, 0], "curve": [[1, 1]]})",
         R"({"output": [1, 0], "curve": [[0.5, 0.4], [0.4, 0.5], [1, 1]]})",
