@@ -21,6 +21,15 @@ constexpr double kSameSurface_m = 0.2;
 /// A kind with one more oddity is so much less likely; one that an aim would have shown is, too.
 constexpr double kPerOddity = 0.1, kNotShown = 0.3;
 
+/// Half angle within which a beam is above a third of its peak.
+double beam_radius_rad(const IntensityDistribution& intensity) {
+  double angle_rad = 0;
+  while (angle_rad < kPi / 4 &&
+         intensity.intensity_cd(Vec3(std::sin(angle_rad), 0, -std::cos(angle_rad))) > intensity.max_intensity_cd() / 3)
+    angle_rad += rad_from_deg(0.25);
+  return angle_rad;
+}
+
 /// Directions evenly on a cone.
 Vec3 on_cone(const Vec3& axis, double angle_rad, double about_rad) {
   const Vec3 aside = axis.unitOrthogonal();
@@ -81,6 +90,18 @@ JointRange with_run_up(const JointRange& range) {
   inner.tilt_min_rad += kRunUp_rad;
   inner.tilt_max_rad -= kRunUp_rad;
   return inner;
+}
+
+HeadSetup head_setup(const Rig& rig, std::size_t fixture, const HeadPriors& priors) {
+  const Fixture& head = rig.fixtures[fixture];
+  HeadSetup setup;
+  setup.stated = head.world_from_mount;
+  setup.range = head.range;
+  setup.pan_speed_rad_s = head.pan_speed_rad_s;
+  setup.tilt_speed_rad_s = head.tilt_speed_rad_s;
+  setup.beam_radius_rad = beam_radius_rad(*rig.luminaires[head.luminaire].intensity);
+  setup.priors = priors;
+  return setup;
 }
 
 std::vector<HeadPlace> head_places(const SeenSurface& surface, const RayScene& rays, const HeadSetup& setup) {

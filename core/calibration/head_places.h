@@ -7,6 +7,7 @@
 
 #include "core/calibration/head_fit.h"
 #include "core/calibration/seen_surface.h"
+#include "core/rig/rig.h"
 #include "core/scene/ray_scene.h"
 
 namespace luxrig {
@@ -25,6 +26,9 @@ struct HeadSetup {
   double beam_radius_rad = 0;  ///< half angle within which its light is above a third of its peak
   HeadPriors priors;
 };
+
+/// Of a head of the rig, as its file states it.
+[[nodiscard]] HeadSetup head_setup(const Rig& rig, std::size_t fixture, const HeadPriors& priors);
 
 /// Evenly over the picture: places that the lamp sees, and whose beam the camera sees wholly.
 [[nodiscard]] std::vector<HeadPlace> head_places(const SeenSurface& surface, const RayScene& rays,

@@ -42,9 +42,20 @@ IdentifyPattern::IdentifyPattern(const Rig& rig, std::vector<std::size_t> fixtur
   bright_first_ = brightest < kMinBright;
 }
 
+IdentifyPattern::IdentifyPattern(std::vector<std::size_t> fixtures, std::vector<double> drive, const Joints& joints,
+                                 Time start, Duration how_long)
+    : fixtures_(std::move(fixtures)),
+      bright_drive_(std::move(drive)),
+      joints_(fixtures_.size(), joints),
+      nod_(joints_),
+      turns_(true),
+      still_(true),
+      start_(start),
+      end_(start + how_long) {}
+
 DeskFrame IdentifyPattern::frame_at(Time now) const {
   DeskFrame frame;
-  frame.source = "identify";
+  frame.source = still_ ? "by hand" : "identify";
   frame.presence = over(now) ? DeskPresence::absent : DeskPresence::present;
   const bool first_half = ((now - start_) / kHalfTurn) % 2 == 0;
   for (std::size_t i = 0; i < fixtures_.size(); ++i) {

@@ -62,6 +62,7 @@ struct FixtureStatus {
   bool parked = false;                       ///< dark at rest or on the way there, until the next apply
   bool kept_dark = false;                    ///< its beam could meet a keep-out zone
   std::string waits_for{};                   ///< if parked or kept dark: what lights it again, for a person
+  bool aimed_by_hand = false;                ///< see ShowController::aim
   bool identified = false;                   ///< blinks or nods, so that a person sees which one it is
 };
 
@@ -142,8 +143,8 @@ class ShowController {
   /// while they last. Before the first look they are only stored for it. All or none: refused with a reason if one of
   /// them is invalid, and after go_safe. fade_s: what is held fades so long; none = as the rig's looks.
   Result<void> hold(Time now, std::span<const ByHand> wanted, std::optional<double> fade_s = {});
-  /// Levels go back to their values before, goals to the plan's, and everything is solved again. Returns the number
-  /// released.
+  /// Levels go back to their values before, goals to the plan's, and everything is solved again. Aims by hand end.
+  /// Returns the number released.
   std::size_t release(Time now, std::span<const std::size_t> fixtures, std::span<const std::size_t> points);
   /// All settings held now; `why` is empty (status() fills it).
   [[nodiscard]] std::vector<ByHand> by_hand() const;
@@ -178,6 +179,12 @@ class ShowController {
   /// apply (nothing is lit then), for a duration of 0 or less, under a blackout, for a parked head, and for a head that
   /// looks into a keep-out zone.
   Result<void> identify(Time now, std::size_t fixture, Duration how_long);
+
+  /// Turns a head by hand for `how_long`, its housing lit to `level`; then it returns to its state before. It turns
+  /// while it is lit: give level 0 first, and light when it is there. A repeated call replaces the last. Keep-out zones
+  /// and max_level hold, and so does blackout; no meter is believed meanwhile. Refused where a point has a limit, as the
+  /// light of another aim is not known there, and for what identify() is refused for.
+  Result<void> aim(Time now, std::size_t fixture, const Joints& joints, double level, Duration how_long);
 
   void reading(Time now, const LuxReading& reading);
   void health(Time now, std::span<const Health> devices);

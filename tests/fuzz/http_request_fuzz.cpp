@@ -24,6 +24,11 @@ luxrig::HttpHandlers checking_handlers() {
     LUXRIG_CHECK(seconds > 0 && seconds <= 60, "identify for {} s", seconds);
     return luxrig::Result<void>();
   };
+  handlers.aim = [](const std::string&, const luxrig::Joints& joints, double level, double seconds) {
+    LUXRIG_CHECK(!std::isnan(joints.pan_rad + joints.tilt_rad + level), "{} {}", joints.pan_rad, level);
+    LUXRIG_CHECK(seconds > 0 && seconds <= 60, "an aim for {} s", seconds);
+    return luxrig::Result<void>();
+  };
   handlers.park = [](const std::vector<std::string>&) { return luxrig::Result<void>(); };
   handlers.hand_back = [] {};
   handlers.apply = [](const std::string& plan) -> luxrig::Checked<std::string> {

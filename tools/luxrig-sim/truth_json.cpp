@@ -41,6 +41,10 @@ std::string truth_json(const Rig& rig, const World& world, Faults& faults, const
     if (rig.fixtures[f].moves) {
       fixture["pan_deg"] = deg_from_rad(joints[f].pan_rad);
       fixture["tilt_deg"] = deg_from_rad(joints[f].tilt_rad);
+      const Pose lamp = true_lamp(world.fixtures()[f], joints[f], rig.fixtures[f].roll_rad);
+      const Vec3 along = lamp.direction(-Vec3::UnitZ());
+      fixture["beam_from"] = {lamp.translation_m.x(), lamp.translation_m.y(), lamp.translation_m.z()};
+      fixture["beam_along"] = {along.x(), along.y(), along.z()};
       if (rig.fixtures[f].range.zooms()) fixture["beam_angle_deg"] = deg_from_rad(joints[f].beam_rad);
     }
     json["fixtures"].push_back(std::move(fixture));

@@ -330,6 +330,9 @@ HttpHandlers Daemon::handlers() {
   };
   handlers.blackout = [this](bool on) { return blackout(on); };
   handlers.identify = [this](const std::string& name, double seconds) { return identify(name, seconds); };
+  handlers.aim = [this](const std::string& name, const Joints& joints, double level, double seconds) {
+    return aim(name, joints, level, seconds);
+  };
   handlers.park = [this](const std::vector<std::string>& names) { return park(names); };
   handlers.hand_back = [this] { on_control_thread([this](Time at) { controller_.hand_back(at); }); };
   handlers.apply = [this](const std::string& plan_json) { return apply_json(plan_json); };

@@ -117,6 +117,7 @@ class Daemon {
     return given.get();
   }
   Result<void> identify(const std::string& name, double seconds);
+  Result<void> aim(const std::string& name, const Joints& joints, double level, double seconds);
   Result<void> park(const std::vector<std::string>& names);
   Result<std::string> hold(ByHand::What what, const std::vector<std::string>& names, double value,
                            const ByHandTimes& times);

@@ -73,6 +73,17 @@ Result<void> Daemon::identify(const std::string& name, double seconds) {
   return done.value_or(refusal("the control loop did not answer"));
 }
 
+Result<void> Daemon::aim(const std::string& name, const Joints& joints, double level, double seconds) {
+  const auto fixture = fixture_called(name);
+  if (!fixture) return tl::unexpected(fixture.error());
+  Joints wanted = joints;
+  wanted.beam_rad = session()->rig.fixtures[*fixture].joints.beam_rad;
+  const auto done = ask_control_thread<Result<void>>([this, f = *fixture, wanted, level, seconds](Time at) {
+    return controller_.aim(at, f, wanted, level, from_seconds(seconds));
+  });
+  return done.value_or(refusal("the control loop did not answer"));
+}
+
 Result<void> Daemon::park(const std::vector<std::string>& names) {
   std::vector<std::size_t> heads;
   for (const std::string& name : names) {

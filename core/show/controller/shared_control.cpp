@@ -115,20 +115,38 @@ void SharedControl::identify(OutputProgram& program, Time now, DeskFollowerSetti
   hear(program, now, one->desk, one->pattern.frame_at(now));
 }
 
+std::size_t SharedControl::release(OutputProgram& program, Time now, std::span<const std::size_t> fixtures) {
+  std::size_t ended = 0;
+  for (Identification& one : identified_) {
+    const std::vector<std::size_t>& its = one.pattern.fixtures();
+    if (!one.pattern.holds_still() || one.pattern.over(now) ||
+        std::find_first_of(its.begin(), its.end(), fixtures.begin(), fixtures.end()) == its.end())
+      continue;
+    one.pattern.end(now);
+    hear(program, now, one.desk, one.pattern.frame_at(now));
+    ++ended;
+  }
+  return ended;
+}
+
 std::string SharedControl::who(const Rig& rig, const OutputProgram& program, Time now) const {
-  std::string blinking;
+  std::string blinking, aimed;
   for (const Identification& one : identified_) {
     if (one.pattern.over(now)) continue;
-    blinking += (blinking.empty() ? "" : ", ") + rig.fixtures[one.pattern.fixtures().front()].name;
+    std::string& names = one.pattern.holds_still() ? aimed : blinking;
+    names += (names.empty() ? "" : ", ") + rig.fixtures[one.pattern.fixtures().front()].name;
   }
   if (!blinking.empty()) return blinking + " shows which one it is";
+  if (!aimed.empty()) return aimed + " is aimed by hand";
   return program.desk_has_a_say(now) || !listens_in_silence() ? "a desk has a say in the light"
                                                               : "listening for a desk";
 }
 
 void SharedControl::tell(ShowStatus& status, Time now) const {
   for (const Identification& one : identified_)
-    for (const std::size_t f : one.pattern.fixtures()) status.fixtures[f].identified = !one.pattern.over(now);
+    for (const std::size_t f : one.pattern.fixtures())
+      (one.pattern.holds_still() ? status.fixtures[f].aimed_by_hand : status.fixtures[f].identified) =
+          !one.pattern.over(now);
   for (std::size_t d = 0; d < followers_.size(); ++d) {
     if (names_[d].empty()) continue;
     const DeskFollower& desk = followers_[d];

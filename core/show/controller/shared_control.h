@@ -3,6 +3,7 @@
 /// a desk for a while. Each has one entry in OutputProgram::desks, which this part keeps.
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,9 @@ class SharedControl {
   bool prolong(Time now, const std::vector<std::size_t>& fixtures, Time until);
   /// settings: of a desk for these fixtures, used the first time.
   void identify(OutputProgram& program, Time now, DeskFollowerSettings settings, IdentifyPattern pattern);
+
+  /// Ends the aims by hand of any of these fixtures. Returns how many there were.
+  std::size_t release(OutputProgram& program, Time now, std::span<const std::size_t> fixtures);
 
   /// Who shares control, in words; requires shared().
   [[nodiscard]] std::string who(const Rig& rig, const OutputProgram& program, Time now) const;

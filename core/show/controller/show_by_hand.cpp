@@ -131,7 +131,8 @@ Result<void> ShowController::hold(Time now, std::span<const ByHand> wanted, std:
 std::size_t ShowController::release(Time now, std::span<const std::size_t> fixtures,
                                     std::span<const std::size_t> points) {
   now = state_->at_least_last(now);
-  return state_->release(now, fixtures, points);
+  const std::size_t aims = state_->sharing.release(state_->program, now, fixtures);
+  return aims + state_->release(now, fixtures, points);
 }
 
 std::vector<ByHand> ShowController::by_hand() const { return state_->hands.all(); }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/check.h"
+#include "core/output/dimming.h"
 #include "core/rig/housing.h"
 #include "core/show/controller/show_state.h"
 
@@ -110,6 +111,36 @@ Result<void> ShowController::State::identify(Time now, std::size_t fixture, Dura
   return {};
 }
 
+Result<void> ShowController::State::aim(Time now, std::size_t fixture, const Joints& joints, double level,
+                                        Duration how_long) {
+  LUXRIG_CHECK(fixture < rig.fixtures.size(), "fixture {} of {}", fixture, rig.fixtures.size());
+  const Fixture& head = rig.fixtures[fixture];
+  const auto within = [](double angle, double least, double most) { return angle >= least && angle <= most; };
+  if (!head.moves) return refusal("it has no pan and tilt");
+  if (how_long <= Duration::zero() || !(level >= 0 && level <= 1))
+    return refusal("give a level of 0 to 1 and a time above 0");
+  if (!within(joints.pan_rad, head.range.pan_min_rad, head.range.pan_max_rad) ||
+      !within(joints.tilt_rad, head.range.tilt_min_rad, head.range.tilt_max_rad) ||
+      (head.range.zooms() && !within(joints.beam_rad, head.range.beam_min_rad, head.range.beam_max_rad)))
+    return refusal("that is outside its range");
+  if (program.blackout) return refusal("a blackout lies over everything: lift it first");
+  if (phase == Phase::idle) return refusal("nothing is lit yet: apply a plan first");
+  if (parked(fixture)) return refusal("it is parked: apply a plan first");
+  if (const auto zone = head_guard.zones().met(fixture, joints))
+    return refusal(fmt::format("it would look into keep-out zone \"{}\"", head_guard.zones().name(*zone)));
+  const std::vector<std::size_t> fixtures = housing_of(rig, fixture);
+  DeskFollowerSettings settings = desk_settings({DeskMode::takeover, HandBack::at_once}, fixtures);
+  if (!settings.desk_may_turn) return refusal("points of this rig have limits, and what it gives there is not known");
+  settings.fade = std::min(settings.fade, kIdentifyFade);
+  std::vector<double> drive;
+  for (const std::size_t f : fixtures)
+    drive.push_back(drive_for(rig.fixtures[f], std::min(level, program.max_level[f])));
+  sharing.identify(program, now, std::move(settings),
+                   IdentifyPattern(fixtures, std::move(drive), joints, now, how_long));
+  guard_against_desks(now);
+  return {};
+}
+
 std::size_t ShowController::add_desk(const DeskRules& rules, const DeskPart& part) {
   State& state = *state_;
   const std::size_t desk = state.sharing.add(state.program, state.desk_settings(rules, part.fixtures), part.name);
@@ -125,6 +156,11 @@ void ShowController::desk(Time now, std::size_t index, const DeskFrame& frame) {
 Result<void> ShowController::identify(Time now, std::size_t fixture, Duration how_long) {
   now = state_->at_least_last(now);
   return state_->identify(now, fixture, how_long);
+}
+
+Result<void> ShowController::aim(Time now, std::size_t fixture, const Joints& joints, double level, Duration how_long) {
+  now = state_->at_least_last(now);
+  return state_->aim(now, fixture, joints, level, how_long);
 }
 
 void ShowController::hand_back(Time now) {

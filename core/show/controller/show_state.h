@@ -145,6 +145,7 @@ struct ShowController::State {
   [[nodiscard]] DeskFollowerSettings desk_settings(const DeskRules& rules,
                                                    const std::vector<std::size_t>& fixtures) const;
   Result<void> identify(Time now, std::size_t fixture, Duration how_long);
+  Result<void> aim(Time now, std::size_t fixture, const Joints& joints, double level, Duration how_long);
 
   // Parking (show_park.cpp).
   Result<void> park(Time now, std::span<const std::size_t> fixtures);

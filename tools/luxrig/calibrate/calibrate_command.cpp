@@ -16,6 +16,7 @@
 #include "core/output/dimming.h"
 #include "tools/command_line/installed.h"
 #include "tools/luxrig/calibrate/by_camera.h"
+#include "tools/luxrig/calibrate/by_heads.h"
 #include "tools/luxrig/calibrate/daemon_rig.h"
 #include "tools/luxrig/calibrate/hand_meter.h"
 #include "tools/luxrig/commands.h"
@@ -36,6 +37,7 @@ struct CalibrateArguments {
   bool meters = false, hand = false;  ///< neither, and no camera = meters
   std::string hours = "closed";
   std::optional<std::string> camera;                ///< name
+  bool no_heads = false;                            ///< with a camera: pan-tilt heads are left as they are
   std::optional<std::filesystem::path> meter_file;  ///< of the meter in the hand
   std::optional<std::filesystem::path> file;        ///< none = calibration.json beside the rig file
 };
@@ -148,6 +150,28 @@ Result<void> by_camera(Measuring& measuring) {
   if (!readings) return tl::unexpected(readings.error());
   measuring.any = measuring.any || !readings->empty();
   return measuring.light.learn(*readings);
+}
+
+/// How the rig's heads hang and turn, told as it is found.
+Result<std::vector<MeasuredHead>> by_heads(const Measuring& measuring) {
+  const Rig& rig = measuring.session.rig;
+  if (const std::string why = why_no_heads(rig); !why.empty()) {
+    fmt::print("Heads are not measured: {}.\n", why);
+    return std::vector<MeasuredHead>{};
+  }
+  auto heads = measure_heads(measuring.session, measuring.camera->camera, measuring.daemon, measuring.stop);
+  if (heads)
+    for (const MeasuredHead& head : *heads) fmt::print("{}\n", words_of(rig, head));
+  return heads;
+}
+
+/// Heads that were found, and those that were before and were not measured again.
+void put_heads(const Rig& rig, const std::vector<MeasuredHead>& heads, const std::filesystem::path& file,
+               Calibration& found) {
+  const auto text = read_file(file);
+  const auto before =
+      text ? calibration_from_json(*text, file.string()) : Checked<Calibration>(tl::unexpected(text.error()));
+  put_heads(rig, heads, before ? &*before : nullptr, found);
 }
 
 /// One place; false = the person is done.
@@ -281,6 +305,12 @@ int run_calibrate(const CalibrateArguments& arguments) {
       return report(measured.error());
   if (view)
     if (auto measured = by_camera(measuring); !measured) return report(measured.error());
+  std::vector<MeasuredHead> heads;
+  if (view && !arguments.no_heads) {
+    auto measured = by_heads(measuring);
+    if (!measured) return report(measured.error());
+    heads = std::move(*measured);
+  }
   if (arguments.hand)
     if (auto measured = by_hand(measuring, HandMeter(arguments.meter_file)); !measured) return report(measured.error());
 
@@ -291,6 +321,7 @@ int run_calibrate(const CalibrateArguments& arguments) {
   const auto file = arguments.file.value_or(calibration_file(rig));
   if (auto kept = keep_old(file); !kept) return report(kept.error());
   Calibration found = calibration_of(*session, *light, measuring.curves, utc_now());
+  put_heads(rig, heads, file, found);
   if (auto written = write_file(file, to_json(found)); !written) return report(written.error());
   CalibrationReport told =
       report_of(view ? *view->session : *session, before, *light, std::move(found), kLevelOfUse, measuring.no_points());
@@ -316,9 +347,12 @@ Action declare_calibrate(CLI::App& command) {
   command.add_flag("--hand", calibrate->hand,
                    "by a luxmeter in your hand: it says where to hold it, you type readings");
   command
-      .add_option("--camera", calibrate->camera,
-                  "by this [[camera]] of the rig, with at least one reading of a luxmeter")
+      .add_option(
+          "--camera", calibrate->camera,
+          "by this [[camera]] of the rig, with at least one reading of a luxmeter; pan-tilt heads too: how they "
+          "hang and turn")
       ->type_name("NAME");
+  command.add_flag("--no-heads", calibrate->no_heads, "with --camera: do not turn the rig's pan-tilt heads");
   command.add_option("--meter-file", calibrate->meter_file,
                      "with --hand: file that the meter's program writes; Enter alone takes its last reading");
   command

@@ -148,6 +148,16 @@ Result<void> DaemonRig::hold(std::span<const double> level) const {
   return {};
 }
 
+Result<void> DaemonRig::aim(std::size_t fixture, const Joints& sent, const Approach& from, double level) const {
+  const Fixture& in_use = dimmed_as_[fixture];
+  const Joints turned = in_use.joint_map ? in_use.joint_map->reached_by(sent, from) : sent;
+  return post("/api/aim", {{"fixture", in_use.name},
+                           {"pan_deg", deg_from_rad(turned.pan_rad)},
+                           {"tilt_deg", deg_from_rad(turned.tilt_rad)},
+                           {"level", share_at_level(in_use.measured_curve, level)},
+                           {"for_s", kHeld_s}});
+}
+
 Result<json> DaemonRig::look() {
   auto now = status();
   if (!now) return now;

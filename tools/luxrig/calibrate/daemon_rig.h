@@ -37,6 +37,11 @@ class DaemonRig {
   /// Holds the same levels for longer. Call it every kHoldAgain while a person is waited for.
   [[nodiscard]] Result<void> hold_again() const { return hold(held_); }
   static constexpr std::chrono::seconds kHoldAgain{15};
+  /// Turns a head to where these joints take it, in the rig file's terms, its lamp at this share of full light. It is
+  /// there once it has had the time. Lasts as long as a held level. from: the side that each joint comes from.
+  [[nodiscard]] Result<void> aim(std::size_t fixture, const Joints& sent, const Approach& from, double level) const;
+  /// The daemon turns its heads by a calibration already.
+  [[nodiscard]] bool turns_as_found(std::size_t fixture) const { return dimmed_as_[fixture].joint_map.has_value(); }
   /// Where the daemon's simulated rig gives pictures; none = its rig is real.
   [[nodiscard]] const std::optional<HttpPeer>& sim_control() const { return sim_control_; }
 

@@ -95,6 +95,25 @@ struct Routes {
     return dumped_answer({{"seconds", seconds}});
   }
 
+  [[nodiscard]] HttpResponse aim(const HttpRequest& request) const {
+    const auto body = json_body(request.body);
+    const auto is_number = [&](const char* key) { return body.contains(key) && body[key].is_number(); };
+    if (!body.is_object() || !body.contains("fixture") || !body["fixture"].is_string() || !is_number("pan_deg") ||
+        !is_number("tilt_deg") || !is_number("level") || !is_number("for_s"))
+      return http_refusal(
+          400,
+          "send {\"fixture\": \"a head's name\", \"pan_deg\": 0, \"tilt_deg\": 45, \"level\": 0.5, \"for_s\": 10}");
+    const double seconds = body["for_s"].get<double>();
+    if (!(seconds > 0 && seconds <= kIdentifyAtMost_s))
+      return http_refusal(400, fmt::format("for_s must be above 0 and at most {:g}", kIdentifyAtMost_s));
+    const Joints joints{rad_from_deg(body["pan_deg"].get<double>()), rad_from_deg(body["tilt_deg"].get<double>()), 0};
+    if (const auto done =
+            handlers.aim(body["fixture"].get<std::string>(), joints, body["level"].get<double>(), seconds);
+        !done)
+      return http_refusal(400, done.error().detail);
+    return dumped_answer({{"for_s", seconds}});
+  }
+
   [[nodiscard]] HttpResponse park(const HttpRequest& request) const {
     const auto body = json_body(request.body);
     std::vector<std::string> fixtures;
@@ -157,6 +176,7 @@ std::vector<HttpRoute> command_routes(HttpHandlers handlers) {
       {get, "/api/room.png", [to](Request) { return to->room_png(); }},
       {post, "/api/blackout", [to](Request request) { return to->blackout(request); }, 1024, true},
       {post, "/api/identify", [to](Request request) { return to->identify(request); }},
+      {post, "/api/aim", [to](Request request) { return to->aim(request); }},
       {post, "/api/park", [to](Request request) { return to->park(request); }},
       {post, "/api/hand-back",
        [to](Request) {

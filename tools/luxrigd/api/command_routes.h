@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/result.h"
+#include "core/rig/frames.h"
 #include "core/show/by_hand.h"
 #include "tools/http/server.h"
 
@@ -21,6 +22,8 @@ struct HttpHandlers {
   std::function<Result<void>(bool on)> blackout;
   /// Identifies a fixture by its light, for this many seconds.
   std::function<Result<void>(const std::string& fixture, double seconds)> identify;
+  /// Turns a head by hand, lit to this level, for this many seconds.
+  std::function<Result<void>(const std::string& fixture, const Joints& joints, double level, double seconds)> aim;
   /// Heads by name; empty list = all.
   std::function<Result<void>(const std::vector<std::string>& fixtures)> park;
   std::function<void()> hand_back;  ///< gives the light to desks that wait for it

@@ -58,6 +58,7 @@ json fixture_json(const Rig& rig, std::size_t index, const FixtureStatus& status
   if (fixture.moves) out["moves"] = true;
   if (fixture.range.zooms()) out["beam_angle_deg"] = deg_from_rad(status.joints.beam_rad);
   if (status.identified) out["identified"] = true;
+  if (status.aimed_by_hand) out["aimed_by_hand"] = true;
   if (status.parked) out["parked"] = true;
   if (status.kept_dark) out["kept_dark"] = true;
   if (!status.waits_for.empty()) out["waits_for"] = status.waits_for;

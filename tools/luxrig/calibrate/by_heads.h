@@ -1,0 +1,37 @@
+#pragma once
+/// How a daemon's pan-tilt heads hang and turn, measured by one of its cameras.
+
+#include <cstddef>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "core/calibration/head_fit.h"
+#include "core/estimation/calibration.h"
+#include "core/tasks/session.h"
+#include "tools/luxrig/calibrate/daemon_rig.h"
+
+namespace luxrig {
+
+struct MeasuredHead {
+  std::size_t fixture = 0;  ///< of the rig; the first of its housing
+  HeadResult result;
+  double seconds = 0;  ///< of rig time
+};
+
+/// Why heads are not measured, in words; empty = they can be, or there are none.
+[[nodiscard]] std::string why_no_heads(const Rig& rig);
+
+/// One head after the other, all else dark. A head whose beam is not found is refused in its result; a fault is of the
+/// daemon or the camera.
+[[nodiscard]] Result<std::vector<MeasuredHead>> measure_heads(const Session& stated, std::size_t camera,
+                                                              DaemonRig& daemon, const std::stop_token& stop);
+
+/// Puts the heads that were found into the calibration, with all lamps of their housings. Of a head that was not, what
+/// `before` says of it stays.
+void put_heads(const Rig& rig, const std::vector<MeasuredHead>& heads, const Calibration* before, Calibration& found);
+
+/// A line for a person.
+[[nodiscard]] std::string words_of(const Rig& rig, const MeasuredHead& head);
+
+}  // namespace luxrig
