@@ -1,11 +1,12 @@
 #pragma once
-/// Which lamps to light together, one step after the other, so that luxmeters tell each lamp's light best for the goals.
+/// Which lamps to light together, one step after the other, so that luxmeters tell each lamp's light best for the
+/// goals.
 ///
 /// With noise in proportion to the reading, a meter learns less of a lamp the more other light it sees: n lamps coded
 /// together (Hadamard) are √n worse than one at a time on that meter, and better only where noise does not depend on
-/// light. But lamps that different meters see can be lit together at no loss, which saves steps. So the steps are chosen
-/// from what is expected: A-optimal for the error at the goals, by exchange of single lamps in single steps, from the best
-/// of one lamp at a time, Hadamard's and a packing by meters. The choice is never worse than any of these.
+/// light. But lamps that different meters see can be lit together at no loss, which saves steps. So the steps are
+/// chosen from what is expected: A-optimal for the error at the goals, by exchange of single lamps in single steps, from
+/// the best of one lamp at a time, Hadamard's and a packing by meters. The choice is never worse than any of these.
 ///
 ///   reading_m = Σ_j lit_j · lux_mj · (1 + x_j) + noise      x_j: prior 0 ± log_sd_j
 ///
@@ -38,9 +39,9 @@ struct LampDesignProblem {
 [[nodiscard]] LampDesign one_at_a_time(std::size_t lamps, std::size_t steps);
 /// Rows of the S-matrix of Sylvester's Hadamard matrix, from the first again: about half of the lamps in each.
 [[nodiscard]] LampDesign hadamard_steps(std::size_t lamps, std::size_t steps);
-/// Every lamp once, in as few steps as there are: lamps that go together are seen mostly by different meters, and no more
-/// than `shared` of a lamp's light at its own meter is others'. From the first again up to `steps`; the last ones are left
-/// out if there are more.
+/// Every lamp once, in as few steps as there are: lamps that go together are seen mostly by different meters, and no
+/// more than `shared` of a lamp's light at its own meter is others'. From the first again up to `steps`; the last ones
+/// are left out if there are more.
 [[nodiscard]] LampDesign packed_by_meters(const LampDesignProblem& problem, std::size_t steps, double shared = 0.25);
 
 /// The best design found with so many steps.

@@ -118,6 +118,27 @@ TEST(LampGroups, LampsThatDifferentMetersSeeGoTogether) {
   EXPECT_LT(error_after(problem, best_design(problem, 4)), 1.05 * alone);
 }
 
+TEST(LampGroups, FiftyLampsUnderSixMetersTakeFifteenSteps) {
+  constexpr Index kLamps = 50, kMeters = 6;
+  LampDesignProblem problem;
+  problem.lux.resize(kMeters, kLamps);
+  for (Index j = 0; j < kLamps; ++j)
+    for (Index m = 0; m < kMeters; ++m) {
+      const double x = 2.0 * static_cast<double>(j % 10) + 1 - (3.3 + 6.7 * static_cast<double>(m % 3));
+      const double y = 2.0 * static_cast<double>(j / 10) + 1 - (2.5 + 5.0 * static_cast<double>(m / 3));
+      problem.lux(m, j) = 300 * (std::exp(-(x * x + y * y) / (2 * 2.5 * 2.5)) + 0.01);
+    }
+  problem.log_sd = VectorXd::Constant(kLamps, 0.15);
+  problem.noise_share = 0.02 / std::sqrt(3.0);
+  problem.noise_lx = 0.02;
+  problem.rest_share = 0.005;
+  problem.goals = MatrixXd::Identity(kLamps, kLamps);
+  const auto rms = [&](const LampDesign& design) { return std::sqrt(error_after(problem, design) / kLamps); };
+  EXPECT_LT(rms(best_design(problem, 15)), 0.015);
+  EXPECT_GT(rms(one_at_a_time(kLamps, 15)), 0.1);
+  EXPECT_GT(rms(hadamard_steps(kLamps, 15)), 0.03);
+}
+
 TEST(LampGroups, CodingHelpsOnlyWhereNoiseDoesNotDependOnTheLight) {
   LampDesignProblem problem;
   problem.lux = MatrixXd::Constant(1, 7, 100);
