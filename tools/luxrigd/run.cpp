@@ -200,12 +200,13 @@ int run_rig(const RunArguments& arguments) {
     if (!known) return report(known.error());
     ports = std::move(*known);
   } else if (arguments.sim) {
-    auto started = SimProcess::start(rig.file, arguments.sim_seed);
+    auto started = SimProcess::start(rig.file, arguments.sim_seed, arguments.sim_deviations);
     if (!started) return report(started.error());
     sim.emplace(std::move(*started));
     say.say(
-        fmt::format("simulated rig started, seed {}: its lamps, curves and poses are not quite what the rig file says",
-                    arguments.sim_seed));
+        fmt::format("simulated rig started, seed {}, deviations {}: its lamps, curves and poses are not quite what the "
+                    "rig file says",
+                    arguments.sim_seed, arguments.sim_deviations));
   }
 
   // 2. The light model and a plan. If an earlier daemon left both, there is light at once.

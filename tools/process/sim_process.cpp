@@ -18,14 +18,15 @@ Fault fault_of(std::string detail) { return {Cause::system, "luxrig-sim", std::m
 
 }  // namespace
 
-Result<SimProcess> SimProcess::start(const std::filesystem::path& rig, std::uint64_t seed) {
+Result<SimProcess> SimProcess::start(const std::filesystem::path& rig, std::uint64_t seed,
+                                     const std::string& deviations) {
   std::string folder = (std::filesystem::temp_directory_path() / "luxrig-sim-XXXXXX").string();
   if (::mkdtemp(folder.data()) == nullptr)
     return tl::unexpected(fault_of("no temporary folder: " + std::string(std::strerror(errno))));
   SimProcess made{std::filesystem::path(folder)};
   auto child = ChildProcess::start("luxrig-sim",
-                                   {rig.string(), "--seed", std::to_string(seed), "--ports-file",
-                                    (made.folder_ / "ports.json").string(), "--with-parent"},
+                                   {rig.string(), "--seed", std::to_string(seed), "--deviations", deviations,
+                                    "--ports-file", (made.folder_ / "ports.json").string(), "--with-parent"},
                                    {made.folder_ / "log", {}});
   if (!child) return tl::unexpected(child.error());
   made.child_.emplace(std::move(*child));

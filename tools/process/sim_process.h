@@ -26,7 +26,9 @@ struct SimTruth {
 class SimProcess {
  public:
   /// Starts luxrig-sim from the folder of this program. `seed`: of its deviations.
-  [[nodiscard]] static Result<SimProcess> start(const std::filesystem::path& rig, std::uint64_t seed);
+  /// deviations: as luxrig-sim --deviations.
+  [[nodiscard]] static Result<SimProcess> start(const std::filesystem::path& rig, std::uint64_t seed,
+                                                const std::string& deviations = "mild");
   ~SimProcess();  ///< ends the child
   SimProcess(SimProcess&& other) noexcept;
   SimProcess& operator=(SimProcess&&) = delete;
