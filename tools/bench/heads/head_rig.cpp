@@ -11,7 +11,7 @@
 namespace luxrig {
 namespace {
 
-constexpr int kHeads = 8;
+constexpr int kHeads = 8, kMeters = 6;
 constexpr double kSpeed_rad_s = rad_from_deg(180);
 enum Paint : std::uint32_t { kFloor, kWalls, kCeiling, kPlinth, kPoster, kMirror };
 
@@ -72,6 +72,19 @@ Scene hall_with_plinths(const Vec3& size_m, std::mt19937_64& random) {
   return scene;
 }
 
+/// At the height of a table, all over the hall.
+void add_meters(const Vec3& size_m, std::uint64_t seed, Rig& rig) {
+  std::mt19937_64 random(seed ^ 0x10e7e55);
+  std::uniform_real_distribution<double> unit;
+  for (int m = 0; m < kMeters; ++m) {
+    Luxmeter meter;
+    meter.name = fmt::format("meter {}", m + 1);
+    meter.position_world_m = Vec3((m % 3 + 0.2 + 0.6 * unit(random)) / 3 * size_m.x(),
+                                  (m / 3 + 0.2 + 0.6 * unit(random)) / 2 * size_m.y(), 0.9);
+    rig.luxmeters.push_back(meter);
+  }
+}
+
 }  // namespace
 
 HeadRig head_rig(std::uint64_t seed) {
@@ -101,6 +114,7 @@ HeadRig head_rig(std::uint64_t seed) {
     made.rig.luminaires.push_back(luminaire);
     made.rig.fixtures.push_back(fixture);
   }
+  add_meters(size_m, seed, made.rig);
   made.camera.eye_world_m = Vec3(0.3, 0.3, size_m.z() - 0.6 - 0.4 * unit(random));
   made.camera.target_world_m = Vec3(0.6 * size_m.x(), 0.6 * size_m.y(), 0.6);
   made.camera.vertical_fov_rad = rad_from_deg(60);

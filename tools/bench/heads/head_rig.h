@@ -1,5 +1,6 @@
 #pragma once
-/// Rigs of the suite `heads`: a hall with eight heads under its ceiling, plinths, a poster, and a mirror on a wall.
+/// Rigs of the suite `heads`: a hall with eight heads under its ceiling, plinths, a poster, a mirror on a wall, and six
+/// luxmeters.
 
 #include <cstdint>
 

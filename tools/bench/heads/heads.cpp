@@ -11,6 +11,7 @@
 #include <string>
 #include <string_view>
 
+#include "core/calibration/head_meter_run.h"
 #include "core/calibration/head_run.h"
 #include "sim/devices/head.h"
 #include "sim/world/deviations.h"
@@ -26,7 +27,9 @@ constexpr double kStep_s = 0.01;
 constexpr double kLampSettles_s = 0.25, kExposure_s = 0.1;
 constexpr int kJudgedAims = 200;
 constexpr double kSilentlyWrong_rad = rad_from_deg(0.3);
-constexpr double kTarget_deg = 0.1;
+constexpr double kTarget_deg = 0.1, kTargetByMeters_deg = 0.5;
+/// A light stays so long that a sample of each luxmeter is of it; how late they are is waited for once (ReadingLog).
+constexpr double kMeterDwell_s = 0.4;
 /// Within it a direction, which has two axes, lies as often as one axis within two standard errors.
 constexpr double kTwoErrors = 2.486;
 
@@ -34,9 +37,13 @@ struct HeadCase {
   const char* name;
   bool bad;           ///< with heads that hang or turn the wrong way, and lines that are swapped
   double camera_rad;  ///< how far the camera is turned off its stated pose
+  bool by_meters = false;
 };
-constexpr HeadCase kHeadCases[] = {
-    {"real", false, 0}, {"bad", true, 0}, {"real, camera 1° off", false, rad_from_deg(1)}};
+constexpr HeadCase kHeadCases[] = {{"real", false, 0},
+                                   {"bad", true, 0},
+                                   {"real, camera 1° off", false, rad_from_deg(1)},
+                                   {"meters", false, 0, true},
+                                   {"meters, bad", true, 0, true}};
 constexpr double kCameraKnown_rad = rad_from_deg(0.01);
 
 /// One simulated rig.
@@ -66,15 +73,6 @@ std::unique_ptr<SimulatedRig> simulate(std::uint64_t seed, const HeadCase& of, i
   return rig;
 }
 
-/// Half angle within which a spot's light is above a third of its peak.
-double beam_radius_rad(const IntensityDistribution& intensity) {
-  double angle_rad = 0;
-  while (angle_rad < kPi / 4 &&
-         intensity.intensity_cd(Vec3(std::sin(angle_rad), 0, -std::cos(angle_rad))) > intensity.max_intensity_cd() / 3)
-    angle_rad += rad_from_deg(0.25);
-  return angle_rad;
-}
-
 struct JudgedHead {
   HeadResult result;
   double rig_seconds = 0, seconds = 0;
@@ -90,32 +88,32 @@ std::size_t head_on_line(const SimulatedRig& rig, std::size_t line) {
   return line;
 }
 
+/// Returns the time that it takes.
+double turn(sim::Head& head, const sim::FixtureTruth& truth, const Fixture& fixture, const Joints& to) {
+  head.set_target(to);
+  double way_s = 0;
+  // With play, its motors go a little farther than the lamp.
+  const Joints lamp = head.joints();
+  const double far_rad =
+      std::max(std::abs(lamp.pan_rad / truth.pan_scale - to.pan_rad), std::abs(lamp.tilt_rad - to.tilt_rad)) +
+      truth.backlash_rad / std::abs(truth.pan_scale);
+  for (; way_s < far_rad / fixture.pan_speed_rad_s; way_s += kStep_s) head.step(kStep_s);
+  return way_s;
+}
+
 JudgedHead run_head(SimulatedRig& rig, std::size_t h, const HeadPriors& priors) {
   const Fixture& fixture = rig.stated.rig.fixtures[h];
   const std::size_t moves = head_on_line(rig, h);
   const sim::FixtureTruth& truth = rig.truths[moves];
   const Luminaire& luminaire = rig.stated.rig.luminaires[rig.stated.rig.fixtures[moves].luminaire];
   JudgedHead judged;
-  HeadSetup setup;
-  setup.stated = fixture.world_from_mount;
-  setup.range = fixture.range;
-  setup.pan_speed_rad_s = fixture.pan_speed_rad_s;
-  setup.tilt_speed_rad_s = fixture.tilt_speed_rad_s;
-  setup.beam_radius_rad = beam_radius_rad(*rig.stated.rig.luminaires[fixture.luminaire].intensity);
-  setup.priors = priors;
+  const HeadSetup setup = head_setup(rig.stated.rig, h, priors);
   const auto started = std::chrono::steady_clock::now();
   double picture_seconds = 0;
   HeadRun run(rig.surface, rig.rays, setup);
   sim::Head head(rig.stated.rig.fixtures[moves], truth.pan_scale, truth.backlash_rad);
   while (const auto step = run.next()) {
-    head.set_target(step->joints);
-    double way_s = 0;
-    // With play, its motors go a little farther than the lamp.
-    const Joints lamp = head.joints();
-    const double far_rad = std::max(std::abs(lamp.pan_rad / truth.pan_scale - step->joints.pan_rad),
-                                    std::abs(lamp.tilt_rad - step->joints.tilt_rad)) +
-                           truth.backlash_rad / std::abs(truth.pan_scale);
-    for (; way_s < far_rad / fixture.pan_speed_rad_s; way_s += kStep_s) head.step(kStep_s);
+    const double way_s = turn(head, truth, fixture, step->joints);
     judged.rig_seconds +=
         step->lit ? way_s + kLampSettles_s + kExposure_s : std::max(way_s, kLampSettles_s + kExposure_s);
     std::optional<HeadPictures::Beam> beam;
@@ -128,6 +126,92 @@ JudgedHead run_head(SimulatedRig& rig, std::size_t h, const HeadPriors& priors) 
   }
   judged.result = run.result();
   judged.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count() - picture_seconds;
+  return judged;
+}
+
+/// Luxmeters as the deviations have them, each with its own delay.
+class HeadMeters {
+ public:
+  HeadMeters(const SimulatedRig& rig, std::uint64_t seed) : rig_(rig), random_(seed ^ 0x6e7e5) {
+    std::uniform_real_distribution<double> unit;
+    for (const Luxmeter& meter : rig.stated.rig.luxmeters) {
+      stated_.push_back({meter.position_world_m, meter.normal_world, kMeterNoise});
+      gain_.push_back(1 + meter.tolerance * (2 * unit(random_) - 1));
+      delay_s_ = std::max(delay_s_, kFastestMeter_s + (kSlowestMeter_s - kFastestMeter_s) * unit(random_));
+    }
+  }
+  [[nodiscard]] const std::vector<HeadMeter>& stated() const { return stated_; }
+  [[nodiscard]] double delay_s() const { return delay_s_; }
+
+  /// Direct light, what the wall throws back where the beam's axis falls, and the room's own.
+  std::vector<double> read(const std::optional<HeadPictures::Beam>& beam) {
+    std::normal_distribution<double> normal;
+    std::optional<Hit> wall;
+    if (beam)
+      wall = rig_.true_rays.nearest(beam->world_from_lamp.translation_m,
+                                    beam->world_from_lamp.direction(-Vec3::UnitZ()), Vec3::Zero());
+    std::vector<double> lux;
+    for (std::size_t m = 0; m < stated_.size(); ++m) {
+      double light = kRoomLight_lx;
+      if (beam) light += direct_lx(stated_[m], *beam);
+      if (wall) {
+        const Vec3 to_m = stated_[m].position_world_m - wall->position_world_m;
+        const double leaves = to_m.normalized().dot(wall->normal_world),
+                     arrives = -to_m.normalized().dot(stated_[m].normal_world);
+        if (leaves > 0 && arrives > 0)
+          light += beam->intensity->flux_lm() * rig_.true_rays.material_of(wall->triangle).luminous_reflectance() /
+                   kPi * leaves * arrives / std::max(to_m.squaredNorm(), 0.16);
+      }
+      lux.push_back(gain_[m] * light * (1 + kMeterNoise * normal(random_)));
+    }
+    return lux;
+  }
+
+ private:
+  static constexpr double kRoomLight_lx = 20, kMeterNoise = 0.02, kFastestMeter_s = 0.1, kSlowestMeter_s = 2;
+  [[nodiscard]] double direct_lx(const HeadMeter& meter, const HeadPictures::Beam& beam) const {
+    const Vec3 to_m = meter.position_world_m - beam.world_from_lamp.translation_m;
+    const double cosine = -to_m.normalized().dot(meter.normal_world);
+    if (!(cosine > 0) ||
+        rig_.true_rays.occluded(meter.position_world_m, meter.normal_world, beam.world_from_lamp.translation_m))
+      return 0;
+    const Vec3 in_lamp = beam.world_from_lamp.inverse_direction(to_m.normalized());
+    return beam.intensity->intensity_cd(in_lamp) * cosine / to_m.squaredNorm();
+  }
+
+  const SimulatedRig& rig_;
+  std::mt19937_64 random_;
+  std::vector<HeadMeter> stated_;
+  std::vector<double> gain_;
+  double delay_s_ = 0;
+};
+
+JudgedHead run_head_by_meters(const SimulatedRig& rig, std::size_t h, const HeadPriors& priors, HeadMeters& meters) {
+  const Fixture& fixture = rig.stated.rig.fixtures[h];
+  const std::size_t moves = head_on_line(rig, h);
+  const sim::FixtureTruth& truth = rig.truths[moves];
+  JudgedHead judged;
+  const HeadSetup setup = head_setup(rig.stated.rig, h, priors);
+  const auto started = std::chrono::steady_clock::now();
+  HeadMeterRun run(meters.stated(), *rig.stated.rig.luminaires[fixture.luminaire].intensity, rig.rays, setup);
+  sim::Head head(rig.stated.rig.fixtures[moves], truth.pan_scale, truth.backlash_rad);
+  while (!run.next().empty()) {
+    std::vector<std::vector<double>> read;
+    for (const HeadMeterRun::Step& step : run.next()) {
+      judged.rig_seconds += turn(head, truth, fixture, step.joints);
+      if (!step.read) continue;
+      judged.rig_seconds += kMeterDwell_s;
+      std::optional<HeadPictures::Beam> beam;
+      if (step.lit)
+        beam = HeadPictures::Beam{sim::true_lamp(truth, head.joints(), fixture.roll_rad),
+                                  rig.stated.rig.luminaires[rig.stated.rig.fixtures[moves].luminaire].intensity.get()};
+      read.push_back(meters.read(beam));
+    }
+    judged.rig_seconds += kLampSettles_s + meters.delay_s();
+    run.take(read);
+  }
+  judged.result = run.result();
+  judged.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   return judged;
 }
 
@@ -181,17 +265,17 @@ BenchRow row_of(const HeadCase& of, const std::vector<JudgedHead>& heads) {
       ++refused;
       continue;
     }
-    silently_wrong += head.rms_rad > kSilentlyWrong_rad;
+    silently_wrong += head.rms_rad > (of.by_meters ? rad_from_deg(kTargetByMeters_deg) : kSilentlyWrong_rad);
     for (const double off : head.off_rad) off_deg.push_back(deg_from_rad(off));
     in_errors.insert(in_errors.end(), head.in_errors.begin(), head.in_errors.end());
   }
   const auto within = std::count_if(in_errors.begin(), in_errors.end(), [](double e) { return e < kTwoErrors; });
   BenchRow row;
   row.case_name = of.name;
-  row.method = "camera";
+  row.method = of.by_meters ? "luxmeters" : "camera";
   row.error = share_below(off_deg, 0.95);
   row.seconds = seconds;
-  row.target_error = kTarget_deg;
+  row.target_error = of.by_meters ? kTargetByMeters_deg : kTarget_deg;
   row.further = {
       {"worst", fmt::format("{:.3f}", share_below(off_deg, 1))},
       {"heads", fmt::format("{}", heads.size())},
@@ -219,11 +303,12 @@ std::vector<BenchRow> bench_heads(const BenchOptions& options) {
           Mat3::Identity() * std::pow(of.camera_rad > 0 ? of.camera_rad : kCameraKnown_rad, 2);
       std::vector<HeadResult> results;
       const std::size_t first = heads.size();
+      HeadMeters meters(*rig, seed);
       for (std::size_t h = 0; h < rig->truths.size(); ++h) {
-        heads.push_back(run_head(*rig, h, priors));
+        heads.push_back(of.by_meters ? run_head_by_meters(*rig, h, priors, meters) : run_head(*rig, h, priors));
         results.push_back(heads.back().result);
       }
-      conclude_together(priors, results);
+      if (!of.by_meters) conclude_together(priors, results);
       for (std::size_t h = 0; h < results.size(); ++h) {
         JudgedHead& head = heads[first + h];
         head.result = std::move(results[h]);
