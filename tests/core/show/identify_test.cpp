@@ -94,6 +94,51 @@ TEST(Identify, ALampBlinksInHalfSecondsAndReturnsToItsLevel) {
   for (std::size_t f = 0; f < 4; ++f) EXPECT_NEAR(small.levels()[f], before[f], 0.01) << f;
 }
 
+TEST(AimByHand, TurnsAndLightsAHeadUntilItsTimeIsOverOrItIsReleased) {
+  IdentifyShow small;
+  small.show->apply(at(0), std::vector<double>{0.3, 0.2, 0.2, 0});
+  small.run(20);
+  const std::vector<double> before = small.levels();
+  const Joints looked = small.head();
+  for (const bool released : {false, true}) {
+    ASSERT_TRUE(small.show->aim(at(small.now_s), 3, {0.5, -0.3, 0}, 0, from_seconds(10)));
+    small.run(1);
+    ASSERT_TRUE(small.show->aim(at(small.now_s), 3, {0.5, -0.3, 0}, 0.7, from_seconds(5)));
+    small.run(0.1);
+    EXPECT_EQ(small.head(), (Joints{0.5, -0.3, 0}));
+    EXPECT_NEAR(small.levels()[3], 0.7, 1e-9);
+    for (std::size_t f = 0; f < 3; ++f) EXPECT_EQ(small.levels()[f], before[f]) << f;
+    EXPECT_TRUE(small.status().fixtures[3].aimed_by_hand);
+    EXPECT_FALSE(small.status().fixtures[3].identified);
+    EXPECT_NE(small.status().detail.find("head is aimed by hand"), std::string::npos) << small.status().detail;
+    if (released) EXPECT_EQ(small.show->release(at(small.now_s), std::vector<std::size_t>{3}, {}), 1u);
+    small.run(released ? 1 : 6);
+    EXPECT_EQ(small.head(), looked);
+    EXPECT_EQ(small.levels(), before);
+    EXPECT_FALSE(small.status().fixtures[3].aimed_by_hand);
+  }
+}
+
+TEST(AimByHand, IsRefusedWhereItsLightOrItsWayIsNotKnown) {
+  for (const bool limited : {false, true}) {
+    IdentifyShow small(limited);
+    const auto refused = [&](std::size_t fixture, const Joints& joints, double level, double seconds) {
+      return !small.show->aim(at(small.now_s), fixture, joints, level, from_seconds(seconds));
+    };
+    EXPECT_TRUE(refused(3, {0.5, 0.1, 0}, 0.5, 5)) << "nothing is lit yet";
+    small.show->apply(at(0), std::vector<double>{0.3, 0.2, 0.2, 0});
+    small.run(5);
+    EXPECT_EQ(refused(3, {0.5, 0.1, 0}, 0.5, 5), limited);
+    EXPECT_TRUE(refused(3, {2.5, 0.1, 0}, 0.5, 5));
+    EXPECT_TRUE(refused(3, {NAN, 0.1, 0}, 0.5, 5));
+    EXPECT_TRUE(refused(3, {0.5, 0.1, 0}, 1.5, 5));
+    EXPECT_TRUE(refused(3, {0.5, 0.1, 0}, 0.5, 0));
+    EXPECT_TRUE(refused(0, {0.5, 0.1, 0}, 0.5, 5)) << "not a head";
+    small.show->blackout(at(small.now_s), true);
+    EXPECT_TRUE(refused(3, {0.5, 0.1, 0}, 0.5, 5));
+  }
+}
+
 TEST(Identify, ABrightLampGoesDarkFirst) {
   IdentifyShow small;
   small.show->apply(at(0), std::vector<double>{0.9, 0, 0, 0});
