@@ -78,6 +78,12 @@ void InProcessRig::advance(Time now) {
   world_->advance(Time{} + (now - options_.start));
 }
 
+void InProcessRig::stride(Time now) {
+  apply_until(now);
+  answers_.clear();
+  world_->stride(Time{} + (now - options_.start));
+}
+
 /// A head's axes count as one device that answers.
 template <class Command, class Queue>
 Result<void> InProcessRig::send(Time now, std::span<const Command> commands, std::vector<Device>& devices,

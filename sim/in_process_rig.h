@@ -43,6 +43,8 @@ class InProcessRig final : public LevelOutput, public Mover, public LuxReader {
   [[nodiscard]] std::vector<Health> health(Time now);
 
   void advance(Time now);
+  /// World::stride, after what was sent has arrived.
+  void stride(Time now);
   [[nodiscard]] World& world() { return *world_; }
   [[nodiscard]] Faults& faults() { return faults_; }
 

@@ -8,9 +8,18 @@
 
 namespace luxrig::sim {
 
+double LuxmeterDevice::exposed_lx(double true_lx, double tick_s, std::uint64_t tick) const {
+  const double hours = static_cast<double>(tick) * tick_s / 3600;
+  return true_lx * truth_.gain * (1 + truth_.drift_per_hour * hours);
+}
+
+void LuxmeterDevice::rest(double true_lx, double tick_s, std::uint64_t tick) {
+  sensor_lx_ = exposed_lx(true_lx, tick_s, tick);
+  on_the_way_.clear();
+}
+
 void LuxmeterDevice::step(double true_lx, double dt_s, std::uint64_t tick) {
-  const double hours = static_cast<double>(tick) * dt_s / 3600;
-  sensor_lx_ = lagged(sensor_lx_, true_lx * truth_.gain * (1 + truth_.drift_per_hour * hours), dt_s, truth_.lag_s);
+  sensor_lx_ = lagged(sensor_lx_, exposed_lx(true_lx, dt_s, tick), dt_s, truth_.lag_s);
   const auto period = static_cast<std::uint64_t>(std::max(1, truth_.ticks_per_sample));
   if (tick % period == static_cast<std::uint64_t>(truth_.first_tick) % period) {
     const double noisy =

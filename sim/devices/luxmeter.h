@@ -29,6 +29,8 @@ class LuxmeterDevice {
 
   /// Exposes it to `true_lx` for one step that ends at tick number `tick`.
   void step(double true_lx, double dt_s, std::uint64_t tick);
+  /// After a long time under this light, at tick number `tick`. It shows what it showed until its next sample arrives.
+  void rest(double true_lx, double tick_s, std::uint64_t tick);
 
   [[nodiscard]] double reading_lx() const { return reading_lx_; }
   [[nodiscard]] std::uint64_t sample() const { return sample_; }            ///< number of samples so far
@@ -37,6 +39,8 @@ class LuxmeterDevice {
   [[nodiscard]] const MeterTruth& truth() const { return truth_; }
 
  private:
+  [[nodiscard]] double exposed_lx(double true_lx, double tick_s, std::uint64_t tick) const;
+
   MeterTruth truth_;
   double sensor_lx_ = 0, reading_lx_ = 0;
   std::uint64_t sample_ = 0, at_tick_ = 0;

@@ -126,6 +126,18 @@ class MatrixWorld final : public World {
     while (this->now() + kTick <= now) tick();
   }
 
+  void stride(Time now) override {
+    if (now <= this->now()) return;
+    const auto ticks = static_cast<std::uint64_t>((now - this->now()) / kTick);
+    if (ticks == 0) return;
+    tick_ += ticks;
+    pass(static_cast<double>(ticks) * to_seconds(kTick));
+    for (std::size_t m = 0; m < meters_.size(); ++m) {
+      const auto i = static_cast<Eigen::Index>(m);
+      meters_[m].rest(cover_[i] * metered_lx_[i], to_seconds(kTick), tick_);
+    }
+  }
+
   [[nodiscard]] Time now() const override { return time_of(tick_); }
   [[nodiscard]] double meter_reading_lx(std::size_t luxmeter) const override {
     LUXRIG_CHECK(luxmeter < meters_.size(), "luxmeter {} of {}", luxmeter, meters_.size());
@@ -166,6 +178,15 @@ class MatrixWorld final : public World {
   void tick() {
     ++tick_;
     const double dt_s = to_seconds(kTick);
+    pass(dt_s);
+    for (std::size_t m = 0; m < meters_.size(); ++m) {
+      const auto i = static_cast<Eigen::Index>(m);
+      meters_[m].step(cover_[i] * metered_lx_[i], dt_s, tick_);
+    }
+  }
+
+  /// All but the meters, to tick_ from so long before.
+  void pass(double dt_s) {
     bool changed = std::exchange(changed_, false);
     for (const std::size_t f : moving_) {
       if (!heads_[f].moving()) continue;
@@ -183,22 +204,17 @@ class MatrixWorld final : public World {
       changed = changed || level != level_[i];
       level_[i] = level;
     }
-    if (tick_ % kTicksPerSecond == 0 && (cloud_share_ > 0 || visits_per_minute_ > 0)) {
+    if ((tick_ % kTicksPerSecond == 0 || dt_s >= 1) && (cloud_share_ > 0 || visits_per_minute_ > 0)) {
       cloud_ = 1 + cloud_share_ * cloud_at(now());
       visited_ = visits_at(now());
       changed = true;
     }
-    if (changed) {  // a rig at rest only costs its meters
-      lux_.noalias() = lux_per_level_ * level_;
-      lux_ = lux_.cwiseProduct(lamp_share_).cwiseProduct(visited_) + daylight_ * cloud_ * fixed_lx_;
-      peak_lx_ = peak_lx_.cwiseMax(lux_);
-      watch_limits();
-      light_meters();
-    }
-    for (std::size_t m = 0; m < meters_.size(); ++m) {
-      const auto i = static_cast<Eigen::Index>(m);
-      meters_[m].step(cover_[i] * metered_lx_[i], dt_s, tick_);
-    }
+    if (!changed) return;  // a rig at rest only costs its meters
+    lux_.noalias() = lux_per_level_ * level_;
+    lux_ = lux_.cwiseProduct(lamp_share_).cwiseProduct(visited_) + daylight_ * cloud_ * fixed_lx_;
+    peak_lx_ = peak_lx_.cwiseMax(lux_);
+    watch_limits();
+    light_meters();
   }
 
   /// What meters make of the light, by the angles from which it comes.

@@ -89,6 +89,9 @@ class World {
   virtual void set_daylight(double factor) = 0;
   /// Advances lamps, heads and meters to `now` in steps of 10 ms, recording peaks at every step. Never goes back.
   virtual void advance(Time now) = 0;
+  /// To `now` in one stride, for hours in which nothing is sent and no head turns: lamps have warmed and aged as by
+  /// advance(). Daylight, visits and peaks between are left out, and meters sample again after it. Never goes back.
+  virtual void stride(Time now) = 0;
   /// Time of the last tick.
   [[nodiscard]] virtual Time now() const = 0;
   /// Reading of a meter at the world's present time (gain, noise, lag, quantisation and clipping included).

@@ -41,6 +41,56 @@ TEST(World, DoesNotDependOnTheStepsOfItsAdvance) {
   EXPECT_EQ(readings_of_show(7, 10ms), readings_of_show(7, 5s));
 }
 
+TEST(World, AStrideOverHoursEndsWhereItsStepsWouldHave) {
+  const Rig rig = tiny_rig();
+  Deviations aging;
+  aging.meter_noise = 0;
+  aging.warm_up_share = 0.05;
+  aging.ageing_per_hour = 0.01;  // much, so that it shows
+  aging.meter_drift_per_hour = 0.02;
+  aging.meter_latency_max_s = 2;
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    aging.seed = seed;
+    const auto stepped = tiny_world(rig, aging), strode = tiny_world(rig, aging);
+    for (const auto& world : {stepped.get(), strode.get()}) {
+      world->set_drive(0, 0.7);
+      world->set_drive(2, 0.4);
+      world->advance(at_s(5));
+    }
+    const double cold_lx = strode->points()[0].lux;
+    stepped->advance(at_s(7205));
+    strode->stride(at_s(7205));
+    EXPECT_EQ(strode->now(), stepped->now());
+    EXPECT_LT(strode->points()[0].lux, 0.995 * cold_lx);
+    for (std::size_t p = 0; p < rig.points.size(); ++p)
+      EXPECT_NEAR(strode->points()[p].lux, stepped->points()[p].lux, 1e-4 * stepped->points()[p].lux);
+    // A meter shows it as soon as its latency is over.
+    stepped->advance(at_s(7208));
+    strode->advance(at_s(7208));
+    for (std::size_t m = 0; m < rig.luxmeters.size(); ++m)
+      EXPECT_NEAR(strode->meter_reading_lx(m), stepped->meter_reading_lx(m), 1e-4 * stepped->meter_reading_lx(m));
+    strode->stride(at_s(100));  // never back
+    EXPECT_EQ(strode->now(), stepped->now());
+  }
+}
+
+TEST(World, AStrideSeesALimitThatIsExceeded) {
+  Rig rig = tiny_rig();
+  const Deviations none = Deviations::none();
+  const auto probe = tiny_world(rig, none);
+  probe->set_drive(0, 1);
+  probe->advance(at_s(2));
+  std::size_t brightest = 0;
+  for (std::size_t p = 0; p < rig.points.size(); ++p)
+    if (probe->points()[p].lux > probe->points()[brightest].lux) brightest = p;
+  rig.points[brightest].max_lx = 0.5 * probe->points()[brightest].lux;
+  const auto world = tiny_world(rig, none);
+  world->set_drive(0, 1);
+  world->stride(at_s(3600));
+  ASSERT_FALSE(world->violations().empty());
+  EXPECT_EQ(world->violations().front().point, brightest);
+}
+
 TEST(World, AnotherSeedGivesAnotherWorld) { EXPECT_NE(readings_of_show(7, 10ms), readings_of_show(8, 10ms)); }
 
 TEST(World, DeviationsStayWithinTheirStatedRanges) {
