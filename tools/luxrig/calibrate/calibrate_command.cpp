@@ -36,6 +36,7 @@ struct CalibrateArguments {
   ComputeOptions compute;
   bool meters = false, hand = false;  ///< neither, and no camera = meters
   std::string hours = "closed";
+  double open_minutes = 28;
   std::optional<std::string> camera;                ///< name
   bool no_heads = false;                            ///< with a camera: pan-tilt heads are left as they are
   std::optional<std::filesystem::path> meter_file;  ///< of the meter in the hand
@@ -44,8 +45,8 @@ struct CalibrateArguments {
 
 /// Share of full light at which the goals' error is told.
 constexpr double kLevelOfUse = 0.4;
-/// In opening hours: how long it may take, and about how long a step takes.
-constexpr double kOpenHours_s = 1700, kOpenStep_s = 3.6;
+/// In opening hours: no step takes less. Most take longer, by the rig's fade and its slowest meter.
+constexpr double kShortestOpenStep_s = 2;
 /// A lamp that is off has this level instead of none.
 constexpr double kDimmestLevel = 0.01;
 
@@ -109,19 +110,36 @@ std::function<void(std::size_t)> progress_of(std::size_t steps) {
   };
 }
 
-/// While visitors are there: the look stays, and each lamp changes by a hair.
-Result<void> by_meters_in_open_hours(Measuring& measuring) {
+/// While visitors are there: the look stays, and each lamp changes by a hair. As many whole rounds of the pattern as there
+/// is time for, at least one.
+Result<void> by_meters_in_open_hours(Measuring& measuring, double minutes) {
   const auto look = measuring.daemon.levels_now();
   if (!look) return tl::unexpected(look.error());
   const OpenRun one_round(measuring.session.rig, *look, 1);
   if (one_round.plan().empty())
     return tl::unexpected(
         Fault{Cause::invalid, "", "no dimmable lamp is lit; apply a plan first, or measure with --hours closed", {}});
-  const double round_s = kOpenStep_s * static_cast<double>(one_round.period());
-  OpenRun run(measuring.session.rig, *look, std::max(1, static_cast<int>(kOpenHours_s / round_s)));
-  const auto read = measuring.daemon.measure(run.plan(), {}, progress_of(run.plan().size()), measuring.stop);
-  if (!read) return tl::unexpected(read.error());
-  for (const DaemonRig::Read& step : *read) run.take(step.sent, step.readings);
+  using Clock = std::chrono::steady_clock;
+  const double wanted_s = 60 * minutes;
+  const std::size_t period = one_round.period();
+  OpenRun run(measuring.session.rig, *look,
+              1 + static_cast<int>(wanted_s / (kShortestOpenStep_s * static_cast<double>(period))));
+  const auto progress = progress_line("measuring");
+  const auto begun = Clock::now();
+  const auto elapsed_s = [&] { return std::chrono::duration<double>(Clock::now() - begun).count(); };
+  for (std::size_t done = 0; done < run.plan().size();) {
+    const double round_began_s = elapsed_s();
+    const auto read = measuring.daemon.measure(
+        std::span(run.plan()).subspan(done, period), {},
+        [&](std::size_t) {
+          if (progress) progress(std::min(1.0, elapsed_s() / wanted_s));
+        },
+        measuring.stop);
+    if (!read) return tl::unexpected(read.error());
+    for (const DaemonRig::Read& step : *read) run.take(step.sent, step.readings);
+    done += period;
+    if (2 * elapsed_s() - round_began_s > wanted_s) break;
+  }
   measuring.light.read_at(
       Eigen::Map<const Eigen::VectorXd>(look->data(), static_cast<Eigen::Index>(look->size())).cwiseMax(kDimmestLevel));
   const std::vector<LightReading> readings = run.readings(measuring.curves);
@@ -301,7 +319,9 @@ int run_calibrate(const CalibrateArguments& arguments) {
                       false};
   const RigLight before = *light;
   if (meters)
-    if (auto measured = open ? by_meters_in_open_hours(measuring) : by_hanging_meters(measuring); !measured)
+    if (auto measured =
+            open ? by_meters_in_open_hours(measuring, arguments.open_minutes) : by_hanging_meters(measuring);
+        !measured)
       return report(measured.error());
   if (view)
     if (auto measured = by_camera(measuring); !measured) return report(measured.error());
@@ -357,9 +377,13 @@ Action declare_calibrate(CLI::App& command) {
                      "with --hand: file that the meter's program writes; Enter alone takes its last reading");
   command
       .add_option("--hours", calibrate->hours,
-                  "open: the look stays and no lamp changes by more than 2 %, for half an hour; closed: one lamp after "
+                  "open: the look stays and no lamp changes by more than 2 %, for --minutes; closed: one lamp after "
                   "the other, alone (default)")
       ->check(CLI::IsMember({"open", "closed"}));
+  command
+      .add_option("--minutes", calibrate->open_minutes,
+                  "with --hours open: about how long it may take; longer is better known (default 28)")
+      ->check(CLI::Range(0.1, 600.0));
   command.add_option("--file", calibrate->file, "where to write it (else calibration.json beside the rig file)");
   return [calibrate] { return run_calibrate(*calibrate); };
 }
