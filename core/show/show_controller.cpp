@@ -465,6 +465,8 @@ std::vector<double> ShowController::safe_look(Time now) const {
 
 const OutputProgram& ShowController::program() const { return state_->program; }
 
+Phase ShowController::phase() const { return state_->phase; }
+
 ShowStatus ShowController::status(Time now) const { return state_->status(now); }
 
 }  // namespace luxrig

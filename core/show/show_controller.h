@@ -203,6 +203,7 @@ class ShowController {
 
   /// Hand it to the output thread whenever its revision has changed.
   [[nodiscard]] const OutputProgram& program() const;
+  [[nodiscard]] Phase phase() const;  ///< of status(), without the rest
   [[nodiscard]] ShowStatus status(Time now) const;
 
  private:

@@ -6,6 +6,14 @@
 #include "core/output/dimming.h"
 
 namespace luxrig {
+namespace {
+
+/// A show is stepped at 50 Hz, and at half the pace of its meters while its light stands still.
+constexpr Duration kStep = std::chrono::milliseconds(20), kStillStep = std::chrono::milliseconds(100);
+/// The slowest meter's latency, and a sample of it.
+constexpr Duration kSlowestMeter = std::chrono::milliseconds(2300);
+
+}  // namespace
 
 HeldRig::HeldRig(const Rig& rig, const LightModel& model, std::unique_ptr<sim::World> world)
     : rig_(rig), devices_(rig, std::move(world)), show_(rig, model) {}
@@ -42,16 +50,33 @@ std::optional<double> HeldRig::told(double within_s, const std::vector<std::stri
   return to_seconds(now_ - begun);
 }
 
+void HeldRig::rest(double seconds) {
+  now_ += from_seconds(seconds);
+  devices_.stride(now_);
+}
+
+void HeldRig::wake() {
+  now_ += kSlowestMeter;
+  devices_.advance(now_);
+}
+
 void HeldRig::tick() {
   now_ += sim::kTick;
-  if ((now_ - Time{}) / sim::kTick % 2 != 0) return;
+  const bool still = show_.phase() == Phase::holding && show_.program().done(now_);
+  if (now_ - stepped_ < (still ? kStillStep : kStep)) return;
+  stepped_ = now_;
   if (auto readings = (reads_knocked_ ? *knocked_ : devices_).read(now_))
     for (LuxReading& reading : *readings) {
       if (as_read) as_read(reading);
       show_.reading(now_, reading);
     }
-  if ((now_ - Time{}) / sim::kTick % 10 == 0) show_.health(now_, devices_.health(now_));
+  if (now_ - told_ >= kStillStep) {
+    show_.health(now_, devices_.health(now_));
+    told_ = now_;
+  }
+  const Phase before = show_.phase();
   show_.step(now_);
+  corrections_ += before != Phase::correcting && show_.phase() == Phase::correcting;
   const std::vector<double> level = levels();
   std::vector<LevelCommand> commands;
   for (std::size_t f = 0; f < level.size(); ++f) commands.push_back({f, drive_for(rig_.fixtures[f], level[f])});

@@ -24,12 +24,19 @@ class HeldRig {
   void knocked_now() { reads_knocked_ = true; }
 
   void apply(std::span<const double> levels) { show_.apply(now_, levels); }
+  void blackout(bool on) { show_.blackout(now_, on); }
   /// Runs for so long, or until so() is true; returns so().
   bool run(double seconds, const std::function<bool()>& so = {});
+  /// Time in which nothing is looked at: the world goes on, the show neither hears nor sends anything.
+  void rest(double seconds);
+  /// After a rest: until meters show the light of now. The show still hears nothing.
+  void wake();
   /// Seconds after which an alarm's text has all of these, if within so long.
   std::optional<double> told(double within_s, const std::vector<std::string>& parts);
 
   [[nodiscard]] ShowStatus status() const { return show_.status(now_); }
+  [[nodiscard]] Phase phase() const { return show_.phase(); }
+  [[nodiscard]] int corrections() const { return corrections_; }  ///< since the start
   [[nodiscard]] sim::World& world() { return (reads_knocked_ ? *knocked_ : devices_).world(); }
   [[nodiscard]] std::vector<double> levels() const;
   [[nodiscard]] double seconds() const { return to_seconds(now_.time_since_epoch()); }
@@ -42,7 +49,8 @@ class HeldRig {
   std::unique_ptr<sim::InProcessRig> knocked_;
   bool reads_knocked_ = false;
   ShowController show_;
-  Time now_{};
+  Time now_{}, stepped_{}, told_{};  ///< told_: of devices
+  int corrections_ = 0;
 };
 
 }  // namespace luxrig

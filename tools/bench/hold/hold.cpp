@@ -6,6 +6,8 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <functional>
+#include <optional>
 #include <random>
 
 #include "core/output/dimming.h"
@@ -14,6 +16,7 @@
 #include "core/tasks/scene_builder.h"
 #include "core/tasks/session.h"
 #include "tools/bench/hold/held_rig.h"
+#include "tools/bench/hold/year.h"
 #include "tools/bench/suites.h"
 
 namespace luxrig {
@@ -404,6 +407,34 @@ std::vector<BenchRow> crossing_rows(const BenchOptions& options) {
   return rows;
 }
 
+struct TracedSession {
+  Session session;
+  TransportMatrix light;
+};
+
+/// The first rig of the options, changed so; none = it is told why.
+std::optional<TracedSession> session_for(const BenchOptions& options, const std::function<Rig(Rig)>& changed) {
+  auto rig = load_rig(options.rigs.empty() ? "rigs/gallery/rig.toml" : options.rigs.front());
+  auto session = rig ? session_of(changed(std::move(*rig))) : tl::unexpected(rig.error());
+  if (!session) {
+    for (const Problem& problem : session.error()) std::fprintf(stderr, "%s\n", problem.text().c_str());
+    return std::nullopt;
+  }
+  ComputeOptions compute;
+  compute.max_error = kHoldError;
+  compute.threads = options.threads;
+  auto light = compute_transport(*session, compute);
+  if (light) return TracedSession{std::move(*session), std::move(*light)};
+  std::fprintf(stderr, "%s\n", light.error().detail.c_str());
+  return std::nullopt;
+}
+
+std::vector<BenchRow> year_rows(const BenchOptions& options) {
+  const auto daylit = session_for(options, with_blinded_daylight);
+  if (!daylit) return {};
+  return {simulated_year(daylit->session, daylit->light, options)};
+}
+
 }  // namespace
 
 std::vector<BenchRow> bench_hold(const BenchOptions& options) {
@@ -413,29 +444,19 @@ std::vector<BenchRow> bench_hold(const BenchOptions& options) {
     rows.insert(rows.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
   };
   if (wanted("cross-light")) add(crossing_rows(options));
-  if (!wanted("faults") && !wanted("quiet hours")) return rows;
-  auto rig = load_rig(options.rigs.empty() ? "rigs/gallery/rig.toml" : options.rigs.front());
-  auto session = rig ? session_of(std::move(*rig)) : tl::unexpected(rig.error());
-  if (!session) {
-    for (const Problem& problem : session.error()) std::fprintf(stderr, "%s\n", problem.text().c_str());
-    return rows;
+  if (wanted("year")) add(year_rows(options));
+  if (wanted("faults") || wanted("quiet hours")) {
+    const auto measured = session_for(options, [](Rig rig) { return rig; });
+    if (!measured) return rows;
+    const LightModel model = light_model(measured->session.rig, measured->light);
+    if (wanted("faults")) add(named_faults(measured->session, model, options));
+    if (wanted("quiet hours")) add({quiet_hours(measured->session, model, options)});
   }
-  ComputeOptions compute;
-  compute.max_error = kHoldError;
-  compute.threads = options.threads;
-  const auto light = compute_transport(*session, compute);
-  if (!light) {
-    std::fprintf(stderr, "%s\n", light.error().detail.c_str());
-    return rows;
-  }
-  const LightModel model = light_model(session->rig, *light);
-  if (wanted("faults")) add(named_faults(*session, model, options));
-  if (wanted("quiet hours")) add({quiet_hours(*session, model, options)});
   // One header: every row has every column.
   for (BenchRow& row : rows) {
     std::vector<std::pair<std::string, std::string>> all;
-    for (const char* column :
-         {"cases", "named", "among_several", "another_named", "after_s", "overshoot", "corrections"}) {
+    for (const char* column : {"cases", "named", "among_several", "another_named", "after_s", "overshoot",
+                               "corrections", "goals", "at_meters", "of_limit", "exceeded", "looks", "kwh", "digest"}) {
       const auto has =
           std::find_if(row.further.begin(), row.further.end(), [&](const auto& c) { return c.first == column; });
       all.emplace_back(column, has == row.further.end() ? "" : has->second);
