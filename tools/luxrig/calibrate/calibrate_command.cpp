@@ -47,6 +47,8 @@ struct CalibrateArguments {
 constexpr double kLevelOfUse = 0.4;
 /// In opening hours: no step takes less. Most take longer, by the rig's fade and its slowest meter.
 constexpr double kShortestOpenStep_s = 2;
+/// So slowly that nobody sees 2 %.
+constexpr double kOpenFade_s = 1;
 /// A lamp that is off has this level instead of none.
 constexpr double kDimmestLevel = 0.01;
 
@@ -119,6 +121,7 @@ Result<void> by_meters_in_open_hours(Measuring& measuring, double minutes) {
   if (one_round.plan().empty())
     return tl::unexpected(
         Fault{Cause::invalid, "", "no dimmable lamp is lit; apply a plan first, or measure with --hours closed", {}});
+  measuring.daemon.fade_in(kOpenFade_s);
   using Clock = std::chrono::steady_clock;
   const double wanted_s = 60 * minutes;
   const std::size_t period = one_round.period();
@@ -143,7 +146,14 @@ Result<void> by_meters_in_open_hours(Measuring& measuring, double minutes) {
   measuring.light.read_at(
       Eigen::Map<const Eigen::VectorXd>(look->data(), static_cast<Eigen::Index>(look->size())).cwiseMax(kDimmestLevel));
   const std::vector<LightReading> readings = run.readings(measuring.curves);
-  measuring.any = measuring.any || !readings.empty();
+  if (readings.empty())
+    return tl::unexpected(
+        Fault{Cause::invalid,
+              "",
+              fmt::format("in {:.0f} minutes the luxmeters told nothing of any lamp; give it more --minutes",
+                          elapsed_s() / 60),
+              {}});
+  measuring.any = true;
   return measuring.light.learn(readings);
 }
 
@@ -376,9 +386,10 @@ Action declare_calibrate(CLI::App& command) {
   command.add_option("--meter-file", calibrate->meter_file,
                      "with --hand: file that the meter's program writes; Enter alone takes its last reading");
   command
-      .add_option("--hours", calibrate->hours,
-                  "open: the look stays and no lamp changes by more than 2 %, for --minutes; closed: one lamp after "
-                  "the other, alone (default)")
+      .add_option(
+          "--hours", calibrate->hours,
+          "open: the look stays and no lamp is sent a change of more than 2 %, for --minutes; closed: one lamp after "
+          "the other, alone (default)")
       ->check(CLI::IsMember({"open", "closed"}));
   command
       .add_option("--minutes", calibrate->open_minutes,

@@ -27,8 +27,6 @@ using Clock = std::chrono::steady_clock;
 
 /// If this program dies, the daemon's look comes back after this.
 constexpr double kHeld_s = 45;
-/// From one light to the next: nobody is there to be dazzled by a rig that goes on and off, lamp by lamp.
-constexpr double kFade_s = 0.2;
 constexpr auto kPoll = 100ms;
 constexpr auto kLongestWait = 30s;
 /// Less than was asked for, for so long, is all there will be.
@@ -136,13 +134,13 @@ Result<void> DaemonRig::hold(std::span<const double> level) const {
   for (std::size_t f = 0; f < level.size(); ++f)
     if (!(level[f] > 0)) dark.push_back(rig_->fixtures[f].name);
   if (!dark.empty())
-    if (auto put_out = post("/api/level", {{"fixtures", dark}, {"level", 0}, {"for_s", kHeld_s}, {"fade_s", kFade_s}});
+    if (auto put_out = post("/api/level", {{"fixtures", dark}, {"level", 0}, {"for_s", kHeld_s}, {"fade_s", fade_s_}});
         !put_out)
       return put_out;
   for (std::size_t f = 0; f < level.size(); ++f) {
     if (!(level[f] > 0)) continue;
     const json one = {
-        {"fixtures", {rig_->fixtures[f].name}}, {"level", level[f]}, {"for_s", kHeld_s}, {"fade_s", kFade_s}};
+        {"fixtures", {rig_->fixtures[f].name}}, {"level", level[f]}, {"for_s", kHeld_s}, {"fade_s", fade_s_}};
     if (auto lit = post("/api/level", one); !lit) return lit;
   }
   return {};

@@ -36,7 +36,11 @@ class DaemonRig {
   [[nodiscard]] Result<std::vector<double>> light(std::span<const double> level, const std::stop_token& stop);
   /// Holds the same levels for longer. Call it every kHoldAgain while a person is waited for.
   [[nodiscard]] Result<void> hold_again() const { return hold(held_); }
+  /// From one light to the next; else kQuickFade_s.
+  void fade_in(double seconds) { fade_s_ = seconds; }
   static constexpr std::chrono::seconds kHoldAgain{15};
+  /// Nobody is there to be dazzled by a rig that goes on and off, lamp by lamp.
+  static constexpr double kQuickFade_s = 0.2;
   /// Turns a head to where these joints take it, in the rig file's terms, its lamp at this share of full light. It is
   /// there once it has had the time. Lasts as long as a held level. from: the side that each joint comes from.
   [[nodiscard]] Result<void> aim(std::size_t fixture, const Joints& sent, const Approach& from, double level) const;
@@ -78,6 +82,7 @@ class DaemonRig {
   std::vector<Fixture> dimmed_as_{};                      ///< by the calibration in use
   nlohmann::json held_before_ = nlohmann::json::array();  ///< "overrides" of the status
   std::vector<double> held_{};
+  double fade_s_ = kQuickFade_s;
   std::vector<std::vector<TimedLux>> samples_{};  ///< per luxmeter
   std::optional<HttpPeer> sim_control_{};
 };
