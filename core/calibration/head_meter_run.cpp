@@ -17,7 +17,7 @@ constexpr double kNearestMeter_m = 0.5, kLeastCosine = 0.2;
 /// The pan shows only where the beam is not along its axis.
 constexpr double kLeastTilt_rad = rad_from_deg(12);
 /// A meter sees the beam if it reads this share of what it would at its middle; reflections give less.
-constexpr double kSeen = 0.1;
+constexpr double kSeenShare = 0.1;
 /// Aims around a place where the beam was expected, over its radius.
 constexpr double kSearchStep = 1.5;
 constexpr int kMostSearched = 60;  ///< of all meters together
@@ -26,7 +26,7 @@ constexpr int kRing = 8, kMostRounds = 5;
 constexpr double kCentred = 0.12;
 constexpr double kSharpestPeak_rad = rad_from_deg(0.05);
 /// Of a log reading, by shape and reflections; and what the width of the beam may be off.
-constexpr double kShape = 0.03, kWidth = 0.15;
+constexpr double kShape = 0.03, kPeakWidth = 0.15;
 constexpr double kLeastLux = 0.02;  ///< share of the brightest sample; less tells nothing
 constexpr double kSameAim_rad = rad_from_deg(2);
 /// For belief: how near the fit has to come to what it was fitted to and to what it was not; and how clearly another
@@ -109,7 +109,7 @@ std::optional<LightPeak> light_peak(std::span<const PeakSample> samples, const J
   expected[kLog] = std::log(3 * brightest);
   expected[kPanPlay] = play_rad * share;
   expected[kTiltPlay] = play_rad;
-  deviation << 3, 2 * radius_rad, 2 * radius_rad, kWidth, play_rad * share, play_rad;
+  deviation << 3, 2 * radius_rad, 2 * radius_rad, kPeakWidth, play_rad * share, play_rad;
   Vector x = expected;
   Matrix information;
   double squares = 0;
@@ -327,7 +327,7 @@ void HeadMeterRun::take(std::span<const std::vector<double>> lux) {
   const Usable& usable = usable_[targets_[target_].usable];
   const auto of_lamp = [&](std::size_t k) { return lux[k][usable.meter] - dark_lx_[usable.meter]; };
   if (part_ == Part::search) {
-    if (of_lamp(0) > kSeen * usable.peak_lx) return ring_around(ring_.front().joints);
+    if (of_lamp(0) > kSeenShare * usable.peak_lx) return ring_around(ring_.front().joints);
     if (++searched_ >= kMostSearched) return end();
     return search_.empty() ? leave_target() : search_on();
   }

@@ -79,7 +79,7 @@ class SteppedSubject final : public Subject {
   }
   bool apply(std::size_t plan) override { return handlers_.apply(plans_[plan]).has_value(); }
   bool hold(std::size_t lamp, double level) override {
-    return handlers_.level({lamp_name(kOverWorks[lamp])}, level, std::nullopt).has_value();
+    return handlers_.level({lamp_name(kOverWorks[lamp])}, level, {}).has_value();
   }
   bool release() override { return handlers_.release({}).has_value(); }
   bool nonsense(std::size_t kind) override {
@@ -89,9 +89,9 @@ class SteppedSubject final : public Subject {
       case 1:
         return handlers_.apply(plans_[0].substr(0, plans_[0].size() / 2)).has_value();
       case 2:
-        return handlers_.level({"nobody"}, 0.5, std::nullopt).has_value();
+        return handlers_.level({"nobody"}, 0.5, {}).has_value();
       default:
-        return handlers_.level({lamp_name(0)}, 1.5, std::nullopt).has_value();
+        return handlers_.level({lamp_name(0)}, 1.5, {}).has_value();
     }
   }
   void fault(std::size_t which, bool on) override {

@@ -141,9 +141,9 @@ class SteppedVenue final : public Venue {
       case What::lift_blackout:
         return told(handlers_.blackout(event.what == What::blackout));
       case What::level:
-        return told(handlers_.level(event.on, *event.value, event.for_s));
+        return told(handlers_.level(event.on, *event.value, {event.for_s, {}}));
       case What::goal:
-        return told(handlers_.goal(event.on, *event.value, event.for_s));
+        return told(handlers_.goal(event.on, *event.value, {event.for_s, {}}));
       case What::release:
         return told(handlers_.release(event.on));
       case What::park:

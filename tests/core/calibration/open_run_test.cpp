@@ -70,7 +70,9 @@ TEST(OpenRun, NoLampChangesByMoreThanAHairAndNoneThatIsOffLights) {
       const double level = run.plan()[step][f], before = step > 0 ? run.plan()[step - 1][f] : look[f];
       EXPECT_LE(std::abs(level - before), OpenRun::kLargestStep * 1.001 * look[f]);
       EXPECT_LE(level, rig.max_level(rig.fixtures[f]) + 1e-12);
-      if (f == 4 || f == 7) EXPECT_EQ(level, look[f]);
+      if (f == 4 || f == 7) {
+        EXPECT_EQ(level, look[f]);
+      }
     }
 }
 

@@ -122,14 +122,14 @@ Result<void> by_meters_in_open_hours(Measuring& measuring, double minutes) {
     return tl::unexpected(
         Fault{Cause::invalid, "", "no dimmable lamp is lit; apply a plan first, or measure with --hours closed", {}});
   measuring.daemon.fade_in(kOpenFade_s);
-  using Clock = std::chrono::steady_clock;
+  using Steady = std::chrono::steady_clock;
   const double wanted_s = 60 * minutes;
   const std::size_t period = one_round.period();
   OpenRun run(measuring.session.rig, *look,
               1 + static_cast<int>(wanted_s / (kShortestOpenStep_s * static_cast<double>(period))));
   const auto progress = progress_line("measuring");
-  const auto begun = Clock::now();
-  const auto elapsed_s = [&] { return std::chrono::duration<double>(Clock::now() - begun).count(); };
+  const auto begun = Steady::now();
+  const auto elapsed_s = [&] { return std::chrono::duration<double>(Steady::now() - begun).count(); };
   for (std::size_t done = 0; done < run.plan().size();) {
     const double round_began_s = elapsed_s();
     const auto read = measuring.daemon.measure(
