@@ -289,7 +289,7 @@ void HeadMeterRun::search_on() {
   add_steps(ring_.front());
 }
 
-void HeadMeterRun::ring_around(const Joints& centre) {
+void HeadMeterRun::ring_around(Joints centre) {
   part_ = Part::climb;
   centre_ = centre;
   ring_.clear();

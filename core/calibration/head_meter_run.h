@@ -88,7 +88,7 @@ class HeadMeterRun {
   void begin_target();
   void leave_target();
   void search_aims_of_target();
-  void ring_around(const Joints& centre);
+  void ring_around(Joints centre);  // a copy: it may be of ring_
   void add_steps(const Aim& aim);
   void search_on();
   void end_of_ring();
