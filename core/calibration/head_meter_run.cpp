@@ -33,8 +33,7 @@ constexpr double kSameAim_rad = rad_from_deg(2);
 /// kind has to be worse.
 constexpr double kPeakExplained_rad = rad_from_deg(0.35), kMeterHit_rad = rad_from_deg(0.3), kPeakErrors = 3,
                  kKindClearly = 12;
-/// Standard error per axis over aims all around. With 0.35°, 3 of 14 heads that were called found were off by half a
-/// degree and more.
+/// Standard error per axis over aims all around.
 constexpr double kWanted_rad = rad_from_deg(0.25);
 
 /// Four aims from each side tell of both axes.

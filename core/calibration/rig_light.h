@@ -38,7 +38,7 @@ class RigLight {
   /// Per fixture: the level at which it turned out to be read. Before anything is learnt.
   void read_at(const Eigen::VectorXd& level) { known_.read_at(level); }
   /// Adds readings, and takes the light's changes anew at the mounts found, until these stand still. The light is traced
-  /// anew (a second or so) where mounts and paint are found to be far from where it was: a beam that hits a picture in
+  /// anew (seconds) where mounts and paint are found to be far from where it was: a beam that hits a picture in
   /// place of the wall beside it changes what is reflected, too.
   [[nodiscard]] Result<void> learn(std::span<const LightReading> readings);
   [[nodiscard]] const LightUnknowns& known() const { return known_; }

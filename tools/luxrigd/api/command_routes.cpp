@@ -55,7 +55,6 @@ struct Routes {
                               const ByHandHandler& handler) {
     const auto body = json_body(request.body);
     const auto names = names_in(body, names_key);
-    // none = absent or right
     const auto wrong = [&](const char* key, double least, double most) {
       return body.contains(key) && !(body[key].is_number() && body[key] >= least && body[key] <= most);
     };
