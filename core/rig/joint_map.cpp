@@ -10,6 +10,8 @@ namespace {
 
 /// A command that changes by less has not turned back: rounding.
 constexpr double kSameCommand_rad = 1e-7;
+/// A head of which nobody knows from where it comes is first sent beside its aim, by so much and so many times its play.
+constexpr double kBesidePlay = 1.5, kBeside_rad = 0.002;
 /// Nearer to straight down, a beam that lies askew needs more pan than reach() leaves.
 constexpr double kAskewToPan = 5;
 
@@ -33,8 +35,19 @@ std::pair<double, double> ends(double a_rad, double b_rad, double inset_rad) {
   return {least + inset_rad, most - inset_rad};
 }
 
+/// Of a joint that is sent `to`, within its range: a place farther from it than the play, below it if there is room.
+double beside(double to_rad, double play_rad, double scale, double least_rad) {
+  const double away_rad = (kBesidePlay * play_rad + kBeside_rad) / std::abs(scale);
+  return to_rad - away_rad >= least_rad ? to_rad - away_rad : to_rad + away_rad;
+}
+
 void follow(double from_rad, double to_rad, int& side) {
   if (std::abs(to_rad - from_rad) > kSameCommand_rad) side = to_rad > from_rad ? 1 : -1;
+}
+
+Joints sent_without_play(JointMap map, const Joints& wanted) {
+  map.pan_play_rad = map.tilt_play_rad = 0;
+  return map.sent_for(wanted, {});
 }
 
 }  // namespace
@@ -90,13 +103,18 @@ JointRange JointMap::reach() const {
 }
 
 Joints JointSender::send(const JointMap& map, const Joints& wanted) {
-  JointMap without_play = map;
-  without_play.pan_play_rad = without_play.tilt_play_rad = 0;
-  const Joints middle = without_play.sent_for(wanted, {});
+  const Joints middle = sent_without_play(map, wanted);
   follow(middle_.pan_rad, middle.pan_rad, from_.pan);
   follow(middle_.tilt_rad, middle.tilt_rad, from_.tilt);
   middle_ = middle;
   return map.sent_for(wanted, from_);
+}
+
+Joints JointSender::send_beside(const JointMap& map, const Joints& wanted) {
+  middle_ = sent_without_play(map, wanted);
+  middle_.pan_rad = beside(middle_.pan_rad, map.pan_play_rad, map.pan_scale, map.sent.pan_min_rad);
+  middle_.tilt_rad = beside(middle_.tilt_rad, map.tilt_play_rad, map.tilt_scale, map.sent.tilt_min_rad);
+  return middle_;
 }
 
 }  // namespace luxrig

@@ -40,6 +40,9 @@ struct JointMap {
 class JointSender {
  public:
   [[nodiscard]] Joints send(const JointMap& map, const Joints& wanted);
+  /// Beside them, by more than the play: whence it comes from is known then. For a head of which nobody knows that, until
+  /// it may have arrived.
+  [[nodiscard]] Joints send_beside(const JointMap& map, const Joints& wanted);
 
  private:
   Approach from_;

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "core/output/dimming.h"
+#include "core/output/head_travel.h"
 #include "tools/luxrigd/scheduling.h"
 #include "tools/process/clock.h"
 
@@ -192,8 +193,13 @@ void BusThread::aim(Time at) {
   program_.joints_at(at, joints_);
   for (std::size_t k = 0; k < aim_commands_.size(); ++k) {
     AimCommand& command = aim_commands_[k];
-    const std::optional<JointMap>& map = rig_.fixtures[command.fixture].joint_map;
-    command.joints = map ? senders_[k].send(*map, joints_[command.fixture]) : joints_[command.fixture];
+    const Fixture& fixture = rig_.fixtures[command.fixture];
+    command.joints = joints_[command.fixture];
+    if (!fixture.joint_map) continue;
+    Sender& sender = senders_[k];
+    if (!sender.whence_known) sender.whence_known = at + from_seconds(travel_s(fixture, std::nullopt, command.joints));
+    command.joints = at < *sender.whence_known ? sender.joints.send_beside(*fixture.joint_map, command.joints)
+                                               : sender.joints.send(*fixture.joint_map, command.joints);
   }
 }
 

@@ -97,7 +97,12 @@ class BusThread {
   std::vector<Joints> joints_;                ///< of all fixtures
   std::vector<LevelCommand> level_commands_;  ///< fixtures whose lamp is on this bus
   std::vector<AimCommand> aim_commands_;      ///< fixtures that this bus turns or zooms
-  std::vector<JointSender> senders_;          ///< per aim command
+  /// Per aim command.
+  struct Sender {
+    JointSender joints{};
+    std::optional<Time> whence_known{};  ///< by then it has been beside its first aim, wherever it was before
+  };
+  std::vector<Sender> senders_;
   OutputProgram program_;
   SmoothReturn return_;
 

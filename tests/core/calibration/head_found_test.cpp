@@ -6,24 +6,10 @@
 #include <cmath>
 #include <random>
 
+#include "tests/core/calibration/random_head.h"
+
 namespace luxrig {
 namespace {
-
-HeadPose random_pose(std::mt19937_64& random) {
-  std::uniform_real_distribution<double> unit(-1, 1);
-  const auto vector = [&](double most) -> Vec3 { return most * Vec3(unit(random), unit(random), unit(random)); };
-  HeadPose pose;
-  pose.stated = displaced({}, vector(3), vector(2));
-  pose.upside_down = random() % 2;
-  pose.parameters.segment<3>(kHeadOffset) = vector(0.2);
-  pose.parameters.segment<3>(kHeadTurn) = vector(0.1);
-  pose.parameters.segment<2>(kHeadAskew) = 0.05 * Eigen::Vector2d(unit(random), unit(random));
-  pose.parameters[kHeadPanScale] = (random() % 2 ? 1 : -1) * (1 + 0.15 * unit(random));
-  pose.parameters[kHeadTiltScale] = (random() % 2 ? 1 : -1) * (1 + 0.01 * unit(random));
-  pose.parameters[kHeadPanPlay] = 0.03 * std::abs(unit(random));
-  pose.parameters[kHeadTiltPlay] = 0.03 * std::abs(unit(random));
-  return pose;
-}
 
 /// Motors with play behind them: what a head does, whichever side it comes from.
 class HeadWithPlay {
@@ -77,7 +63,7 @@ TEST(FoundHead, OfACalibratedRigHitsWhatItIsAimedAtWhereverItComesFrom) {
   std::normal_distribution<double> normal;
   int aims = 0;
   for (int k = 0; k < 300; ++k) {
-    const HeadPose pose = random_pose(random);
+    const HeadPose pose = random_head(random);
     // Through the file, too.
     const auto read = calibration_from_json(to_json(calibration_of(pose)), "c.json");
     ASSERT_TRUE(read) << read.error().front().text();
@@ -106,10 +92,40 @@ TEST(FoundHead, OfACalibratedRigHitsWhatItIsAimedAtWhereverItComesFrom) {
   EXPECT_GT(aims, 2000);
 }
 
+// Such as after a start of the daemon: the head stands where the last one left it, and nobody knows from which side it
+// came.
+TEST(FoundHead, IsHitFromAnyPostureIfItIsSentBesideItFirst) {
+  std::mt19937_64 random(15);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> unit(-1, 1);
+  int aims = 0;
+  for (int k = 0; k < 300; ++k) {
+    const HeadPose pose = random_head(random);
+    const auto rig = calibrated(rig_of_one_head(pose.stated), calibration_of(pose), "c.json");
+    ASSERT_TRUE(rig);
+    const Fixture& fixture = rig->fixtures[0];
+    const Vec3 towards(normal(random), normal(random), normal(random));
+    const auto joints = pan_tilt_towards(fixture.world_from_mount, towards, fixture.range, {});
+    if (!joints || std::abs(std::sin(joints->tilt_rad)) < std::sin(rad_from_deg(15))) continue;
+    HeadWithPlay head(pose);
+    JointSender sender;
+    const Joints aim = sender.send(*fixture.joint_map, *joints);
+    // Far away, or within its play.
+    const double off_rad = k % 2 ? 1 : 0.01;
+    for (int turn = 0; turn < 2; ++turn)
+      (void)head.beam_after({aim.pan_rad + off_rad * unit(random), aim.tilt_rad + off_rad * unit(random), 0});
+    JointSender next;
+    (void)head.beam_after(next.send_beside(*fixture.joint_map, *joints));
+    EXPECT_LT((head.beam_after(next.send(*fixture.joint_map, *joints)) - towards.normalized()).norm(), 1e-7) << k;
+    ++aims;
+  }
+  EXPECT_GT(aims, 150);
+}
+
 TEST(FoundHead, RestsAndStartsWhereTheSameJointsTakeIt) {
   std::mt19937_64 random(12);
   for (int k = 0; k < 200; ++k) {
-    HeadPose pose = random_pose(random);
+    HeadPose pose = random_head(random);
     pose.parameters.segment<2>(kHeadPanPlay).setZero();
     Rig rig = rig_of_one_head(pose.stated);
     rig.fixtures[0].joints = {0.7, -0.9, 0};

@@ -3,10 +3,13 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <cmath>
 #include <csignal>
+#include <cstdlib>
 #include <fstream>
 #include <regex>
 
+#include "core/geometry.h"
 #include "tests/tools/programs/live_rig.h"
 
 namespace luxrig::testing {
@@ -133,6 +136,67 @@ TEST(CalibrateOverTheWire, ByACameraThatHangsAskewItFindsTheCameraAndEachLamp) {
     EXPECT_LT(output[1].get<double>(), 0.1) << lamp["name"];
   }
   EXPECT_LT(chi_squared, 3 * squared(3.5)) << measured.output;
+}
+
+/// The same room without a limit, its head with a narrow beam.
+void give_a_narrow_head(const std::filesystem::path& rig_file) {
+  give_eyes(rig_file);
+  std::string text = text_of(rig_file);
+  const auto replace = [&](const std::string& what, const std::string& by) {
+    const auto at = text.find(what);
+    ASSERT_NE(at, std::string::npos) << what;
+    text.replace(at, what.size(), by);
+  };
+  replace("max_lx = 200\n", "");
+  replace("name = \"head-1\"\nluminaire = \"narrow\"", "name = \"head-1\"\nluminaire = \"beam\"");
+  replace("[[bus]]",
+          "[[luminaire]]\nname = \"beam\"\nmodel = \"spot\"\nbeam_angle_deg = 10\nfield_angle_deg = 16\nlumens = "
+          "900\n\n[[bus]]");
+  std::ofstream(rig_file) << text;
+}
+
+Vec3 vector_of(const json& list) { return {list[0].get<double>(), list[1].get<double>(), list[2].get<double>()}; }
+
+/// Between where the head truly shines and where it shall [rad].
+double aim_error_rad(const json& truth, const std::string& name, const Vec3& aim_m) {
+  for (const json& lamp : truth["fixtures"]) {
+    if (lamp["name"] != name) continue;
+    const Vec3 along = vector_of(lamp["beam_along"]);
+    const Vec3 wanted = (aim_m - vector_of(lamp["beam_from"])).normalized();
+    return std::atan2(along.cross(wanted).norm(), along.dot(wanted));
+  }
+  return NAN;
+}
+
+// Four minutes, most of them pictures: tools/nightly sets LUXRIG_LONG.
+TEST(CalibrateOverTheWire, ByACameraAHeadThatHangsAskewLooksWhereItShall) {
+  if (std::getenv("LUXRIG_LONG") == nullptr) GTEST_SKIP() << "tools/nightly heads";
+  const Folder folder;
+  std::filesystem::copy(source("tests/rigs/room"), folder / "room", std::filesystem::copy_options::recursive);
+  give_a_narrow_head(folder / "room" / "rig.toml");
+  const std::string path = (folder / "room").string();
+  LiveRig rig(path, {},
+              {"--deviations",
+               "mild,camera_angle_rad=0.01,camera_position_m=0.02,angle_error_rad=0.04,position_error_m=0.04,"
+               "backlash_rad=0.02"});
+  ASSERT_TRUE(rig.wait_phase("holding", 90s)) << rig.daemon().output();
+  const Vec3 floor_m(1.5, -1.0, 0.0);
+  EXPECT_GT(aim_error_rad(rig.truth(), "head-1", floor_m), 0.017);
+  std::vector<std::string> words = calibrate(path, rig.port());
+  for (const char* word : {"--camera", "door", "--meters"}) words.emplace_back(word);
+  const Ran measured = run(words, 280s);
+  ASSERT_EQ(measured.code, 0) << measured.output;
+  EXPECT_NE(measured.output.find("Head \"head-1\" is found"), std::string::npos) << measured.output;
+  const json calibration = json::parse(text_of(folder / "room" / "calibration.json"), nullptr, false);
+  ASSERT_TRUE(calibration.is_object());
+  const json& head = calibration["fixtures"]["head-1"]["head"];
+  ASSERT_TRUE(head.is_object()) << measured.output;
+  EXPECT_TRUE(rig.wait_status([](const json& s) { return s["overrides"].empty(); }, 10s)) << "the look is back";
+  rig.daemon().signal(SIGTERM);
+  rig.daemon().wait(30s);
+  rig.start_daemon();
+  ASSERT_TRUE(rig.wait_phase("holding", 90s)) << rig.daemon().output();
+  EXPECT_LT(aim_error_rad(rig.truth(), "head-1", floor_m), 0.0052) << "0.3°";
 }
 
 /// A person who reads the true light wherever the program asks to hold the meter.

@@ -219,9 +219,7 @@ std::string words_of(const Rig& rig, const MeasuredHead& head) {
   const std::string kind = words_of(result.fit.kind);
   return fmt::format(
       "Head \"{}\" is found{}{}: {:.1f} cm and {:.1f}° off the rig file, play {:.2f}° in pan and {:.2f}° in tilt. The "
-      "farthest of {} places kept for the test was missed by {:.2f}°; {:.0f} s. Its first aim after a start of the "
-      "daemon "
-      "may be off by the play.",
+      "farthest of {} places kept for the test was missed by {:.2f}°; {:.0f} s.",
       name, kind.empty() ? "" : ", it ", kind, 100 * found.segment<3>(kHeadOffset).norm(),
       deg_from_rad(found.segment<3>(kHeadTurn).norm()), deg_from_rad(found[kHeadPanPlay]),
       deg_from_rad(found[kHeadTiltPlay]), result.held_out.size(), deg_from_rad(most_rad), head.seconds);
