@@ -11,10 +11,10 @@
 #include <string>
 #include <string_view>
 
-#include "core/calibration/head_meter_run.h"
 #include "core/calibration/head_run.h"
 #include "sim/devices/head.h"
 #include "sim/world/deviations.h"
+#include "tools/bench/heads/head_meter_run.h"
 #include "tools/bench/heads/head_pictures.h"
 #include "tools/bench/heads/head_rig.h"
 #include "tools/bench/suites.h"

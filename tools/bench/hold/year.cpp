@@ -19,11 +19,11 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kTruthError = 0.005;
+constexpr double kYearTruthError = 0.005;
 constexpr int kDays = 365;
 constexpr double kDay_s = 86400, kOpens_s = 10 * 3600, kCloses_s = 18 * 3600;
 /// A show is looked at when the light at a meter has moved by as much as it corrects, and at least so often.
-constexpr double kMoved = 0.01, kLookEvery_s = 3600, kGlance_s = 60;
+constexpr double kMeterMoved = 0.01, kLookEvery_s = 3600, kGlance_s = 60;
 /// Three samples of a drift, and what corrects it.
 constexpr double kLook_s = 6, kSettles_s = 30;
 /// What a rooflight's blinds let through, on an open horizontal plane: what the file says, and what it is over that of
@@ -153,7 +153,8 @@ class Year {
     record();
     const std::vector<double> lux = meters_lx();
     bool moved = show_.seconds() - looked_s_ >= kLookEvery_s;
-    for (std::size_t m = 0; m < lux.size(); ++m) moved = moved || std::abs(lux[m] - seen_lx_[m]) > kMoved * seen_lx_[m];
+    for (std::size_t m = 0; m < lux.size(); ++m)
+      moved = moved || std::abs(lux[m] - seen_lx_[m]) > kMeterMoved * seen_lx_[m];
     if (!moved) return;
     show_.wake();
     settle();
@@ -212,7 +213,7 @@ BenchRow simulated_year(const Session& session, const TransportMatrix& light, co
   const int days = options.seconds ? std::max(1, static_cast<int>(*options.seconds / kDay_s))
                    : options.quick ? 7
                                    : kDays;
-  auto world = sim::World::make(session.rig, deviations_of_year(seed), kTruthError);
+  auto world = sim::World::make(session.rig, deviations_of_year(seed), kYearTruthError);
   ComputeOptions compute;
   compute.threads = options.threads;
   const auto plan = solve_what_hangs(session, light, compute);

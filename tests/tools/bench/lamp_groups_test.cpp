@@ -1,4 +1,4 @@
-#include "core/calibration/lamp_groups.h"
+#include "tools/bench/loop/lamp_groups.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "core/calibration/lamp_groups.h"
+#include "tools/bench/loop/lamp_groups.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -17,7 +17,7 @@ using Eigen::VectorXd;
 
 constexpr double kOfRounding = 1 + 1e-9;
 /// Passes over all lamps of all steps; an exchange must lower the error by this share.
-constexpr int kPasses = 4;
+constexpr int kExchangePasses = 4;
 constexpr double kLowers = 1e-3;
 
 /// What is known after some steps, as sums that single steps are put into and taken out of.
@@ -87,7 +87,7 @@ void exchange(const LampDesignProblem& problem, LampDesign& design) {
   for (const auto& lit : design) known.put(lit);
   double error = known.error();
   bool better = true;
-  for (int pass = 0; pass < kPasses && better; ++pass) {
+  for (int pass = 0; pass < kExchangePasses && better; ++pass) {
     better = false;
     for (auto& lit : design)
       for (std::size_t lamp = 0; lamp < static_cast<std::size_t>(problem.lux.cols()); ++lamp) {

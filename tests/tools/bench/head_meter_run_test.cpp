@@ -1,4 +1,4 @@
-#include "core/calibration/head_meter_run.h"
+#include "tools/bench/heads/head_meter_run.h"
 
 #include <gtest/gtest.h>
 
