@@ -200,6 +200,7 @@ std::string to_json(const Calibration& calibration) {
   json["rig"] = calibration.rig;
   json["made"] = calibration.made;
   json["made_for"] = fmt::format("{:016x}", calibration.made_for);
+  if (!calibration.simulated.empty()) json["simulated"] = calibration.simulated;
   json["fixtures"] = json["materials"] = json["luxmeters"] = json["points"] = Json::object();
   for (const CalibratedFixture& fixture : calibration.fixtures) {
     Json& entry = json["fixtures"][fixture.name];
@@ -232,6 +233,7 @@ Checked<Calibration> calibration_from_json(const std::string& text, const std::s
   calibration.rig = reader.text(json, "", "rig", true);
   calibration.made = reader.text(json, "", "made", true);
   calibration.made_for = reader.fingerprint(json, "", "made_for");
+  calibration.simulated = reader.text(json, "", "simulated", false);
   each_named(reader, json, "fixtures", [&](const std::string& name, const Json& entry, const std::string& list) {
     const std::string path = list + "/" + name;
     CalibratedFixture fixture;
@@ -305,6 +307,7 @@ Checked<Rig> calibrated(Rig rig, const Calibration& calibration, const std::stri
     rig.scene.paint.emplace_back(material.name, material.reflectance.value);
   if (!problems.empty()) return tl::unexpected(std::move(problems));
   rig.calibrated = calibration.made;
+  rig.calibrated_on = calibration.simulated;
   return rig;
 }
 

@@ -61,6 +61,7 @@ struct Calibration {
   std::string rig;
   std::string made;            ///< when, UTC, as 2026-11-28T06:12:00Z
   std::uint64_t made_for = 0;  ///< RigVersion::light of the rig file then
+  std::string simulated;       ///< which simulated rig was measured: "real, seed 1"; empty = the real one
   std::vector<CalibratedFixture> fixtures;
   std::vector<CalibratedMaterial> materials;
   std::vector<CalibratedLuxmeter> luxmeters;

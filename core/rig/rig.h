@@ -19,7 +19,8 @@ namespace luxrig {
 struct Rig {
   std::filesystem::path file;  ///< as opened; for problems, and for paths relative to it
   std::string name;
-  std::string calibrated;  ///< when the calibration that is applied over the file was made; empty = none is
+  std::string calibrated;     ///< when the calibration that is applied over the file was made; empty = none is
+  std::string calibrated_on;  ///< the simulated rig that it was measured on; empty = the real one
   SceneSpec scene;
   std::vector<Luminaire> luminaires;
   std::vector<Bus> buses;

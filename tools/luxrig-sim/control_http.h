@@ -43,8 +43,9 @@ struct InTheLight {
 /// The body of GET /truth.
 [[nodiscard]] std::string truth_json(const Rig& rig, const World& world, Faults& faults,
                                      const InTheLight& in_the_light);
-/// The body of GET /rig: what never changes while the simulator runs. `places`: where each bus listens.
+/// The body of GET /rig: what never changes while the simulator runs. `places`: where each bus listens. world: which of
+/// all truths this is, in words.
 [[nodiscard]] std::string rig_json(const Rig& rig, const std::map<std::string, EndpointPlace>& places,
-                                   std::uint64_t seed);
+                                   const std::string& world, std::uint64_t seed);
 
 }  // namespace luxrig::sim

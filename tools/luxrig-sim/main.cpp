@@ -119,7 +119,9 @@ int simulate(const Options& options) {
   if (address != sim::kAnyAddress) ports.host = sim::address_text(address);
   std::mutex world_mutex;
   auto control = sim::ControlHttp::open(
-      {*rig, **world, faults, world_mutex, *deviations, sim::rig_json(*rig, places, options.seed)}, ports.control);
+      {*rig, **world, faults, world_mutex, *deviations,
+       sim::rig_json(*rig, places, fmt::format("{}, seed {}", options.deviations, options.seed), options.seed)},
+      ports.control);
   if (!control) return failed(control.error());
   ports.control = (*control)->port();
   if (!options.ports_file.empty()) {

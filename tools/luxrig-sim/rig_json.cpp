@@ -139,8 +139,9 @@ Json fixture_json(const Rig& rig, const Fixture& fixture) {
 
 }  // namespace
 
-std::string rig_json(const Rig& rig, const std::map<std::string, EndpointPlace>& places, std::uint64_t seed) {
-  Json json = {{"rig", rig.name}, {"seed", seed}};
+std::string rig_json(const Rig& rig, const std::map<std::string, EndpointPlace>& places, const std::string& world,
+                     std::uint64_t seed) {
+  Json json = {{"rig", rig.name}, {"world", world}, {"seed", seed}};
   for (const char* list : {"buses", "fixtures", "luxmeters", "cameras", "devices", "faults"})
     json[list] = Json::array();
   for (std::size_t b = 0; b < rig.buses.size(); ++b) {

@@ -131,6 +131,7 @@ std::vector<Problem> needs_a_restart(const Rig& running, const Rig& changed, boo
   if (same_zones && !changed.keep_outs.empty() && !same_light)
     needs(changed.keep_outs.front().in_file, "where things hang beside a [[keep_out]]");
   if (running.daemon.http_port != changed.daemon.http_port) needs(changed.daemon.in_file, "http_port of [daemon]");
+  if (running.calibrated_on != changed.calibrated_on) needs({1, 1}, "which rig calibration.json was measured on");
   // Limits decide whether a desk may turn heads.
   if (listens_to_desks(changed) && has_limits(running) != has_limits(changed))
     needs({1, 1}, "whether points have max_lux, beside a bus with an input for desks,");

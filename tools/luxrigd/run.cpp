@@ -61,6 +61,19 @@ void say_solved(const RunReport& say, const Rig& rig, const Plan& plan) {
     if (point.verdict && *point.verdict != Verdict::met) say.say(fmt::format("  {}: {}", point.name, point.reason));
 }
 
+/// What a simulated rig was found to be says nothing about a real one, nor about another simulated one.
+std::vector<Problem> calibrated_elsewhere(const Rig& rig, const std::optional<SimPorts>& ports) {
+  if (rig.calibrated_on.empty()) return {};
+  const std::string here = ports ? ask_world({ports->control.host, ports->control.port, {}, {}}) : "";
+  if (here == rig.calibrated_on) return {};
+  return {{calibration_file(rig).string(), 0, 0,
+           fmt::format("was measured on a simulated rig ({}), this is {}", rig.calibrated_on,
+                       !ports         ? "the real one"
+                       : here.empty() ? "another"
+                                      : fmt::format("another ({})", here)),
+           "move it elsewhere; then luxrig calibrate measures this one"}};
+}
+
 /// State of goals and limits, in one line.
 std::string goals_text(const ShowStatus& status, const Rig& rig) {
   std::string text = text_of(status.goals);
@@ -178,7 +191,7 @@ int run_rig(const RunArguments& arguments) {
         {rig.file.string(), 1, 1, "nothing hangs in this rig yet: it has tasks that place lights, and no [[fixture]]",
          "have luxrig solve place them, hang and patch them, and write a [[fixture]] for each"}});
   }
-  if (arguments.pictures && (arguments.plan || (!arguments.sim && !arguments.sim_ports) || rig.cameras.empty())) {
+  if (arguments.pictures && (arguments.plan || (!arguments.sim.start && !arguments.sim_ports) || rig.cameras.empty())) {
     return report(std::vector<Problem>{
         {rig.file.string(), 1, 1,
          rig.cameras.empty() ? "--pictures: this rig has no [[camera]]"
@@ -190,6 +203,11 @@ int run_rig(const RunArguments& arguments) {
                       session->scene.triangles.size(), rig.fixtures.size(), rig.points.size(), rig.luxmeters.size()));
   if (!rig.calibrated.empty())
     say.say(fmt::format("as calibrated {} ({})", rig.calibrated, calibration_file(rig).string()));
+  const bool simulates = arguments.sim.start || arguments.sim_ports;
+  if (!simulates)
+    if (const auto elsewhere = calibrated_elsewhere(rig, {}); !elsewhere.empty()) return report(elsewhere);
+  if (simulates && !rig.calibrated.empty() && rig.calibrated_on.empty())
+    say.say("warning  that calibration is of the real rig, and the simulated one is not what was measured");
 
   // 1. The simulated rig computes its truth while we compute the plan.
   DaemonOptions options;
@@ -199,20 +217,20 @@ int run_rig(const RunArguments& arguments) {
     auto known = read_sim_ports(*arguments.sim_ports);
     if (!known) return report(known.error());
     ports = std::move(*known);
-  } else if (arguments.sim) {
-    auto started = SimProcess::start(rig.file, arguments.sim_seed, arguments.sim_deviations);
+  } else if (arguments.sim.start) {
+    auto started = SimProcess::start(rig.file, arguments.sim.seed, arguments.sim.deviations);
     if (!started) return report(started.error());
     sim.emplace(std::move(*started));
     say.say(
         fmt::format("simulated rig started, seed {}, deviations {}: its lamps, curves and poses are not quite what the "
                     "rig file says",
-                    arguments.sim_seed, arguments.sim_deviations));
+                    arguments.sim.seed, arguments.sim.deviations));
   }
 
   // 2. The light model and a plan. If an earlier daemon left both, there is light at once.
   if (arguments.state_folder) {
     options.state_folder = arguments.state_folder;
-  } else if (!arguments.sim && !arguments.sim_ports) {
+  } else if (!arguments.sim.start && !arguments.sim_ports) {
     options.state_folder = default_state_folder(rig.name);
   }
   ComputeOptions compute = arguments.compute;
@@ -277,6 +295,9 @@ int run_rig(const RunArguments& arguments) {
     say.say(fmt::format("simulated rig ready; faults and truth: http://{}:{} (tools/luxrig-sim/README.md)",
                         ports->control.host, ports->control.port));
   }
+
+  if (ports)
+    if (const auto elsewhere = calibrated_elsewhere(rig, ports); !elsewhere.empty()) return report(elsewhere);
 
   // 3. The daemon.
   if (ports) options.redirects = ports->buses;

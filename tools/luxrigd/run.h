@@ -9,11 +9,16 @@
 
 namespace luxrig {
 
+/// A simulated rig of our own.
+struct SimArguments {
+  bool start = false;
+  std::uint64_t seed = 1;
+  std::string deviations = "mild";  ///< how far it is off the rig file: mild, real or bad
+};
+
 struct RunArguments {
   std::filesystem::path rig;
-  bool sim = false;  ///< start a simulated rig and send everything there
-  std::uint64_t sim_seed = 1;
-  std::string sim_deviations = "mild";                ///< how far the simulated rig is off: mild, real or bad
+  SimArguments sim;                                   ///< everything is sent there
   std::optional<std::filesystem::path> sim_ports;     ///< use the running simulator that wrote this file
   std::optional<std::filesystem::path> plan;          ///< apply this instead of solving
   std::optional<std::filesystem::path> state_folder;  ///< default: in the user's home; none with --sim

@@ -8,15 +8,19 @@
 
 namespace luxrig {
 
-void add_run_options(CLI::App& app, RunArguments& arguments) {
-  add_rig_option(app, arguments.rig);
-  app.add_flag("--sim", arguments.sim, "start a simulated rig and send everything there instead of to the devices");
-  app.add_option("--sim-seed", arguments.sim_seed, "seed of the simulated rig's deviations");
+void add_sim_options(CLI::App& app, SimArguments& sim, const char* what) {
+  app.add_flag("--sim", sim.start, what);
+  app.add_option("--sim-seed", sim.seed, "seed of the simulated rig's deviations");
   app.add_option(
-         "--sim-deviations", arguments.sim_deviations,
+         "--sim-deviations", sim.deviations,
          "how far the simulated rig is from the rig file: mild as when new, real as found in halls, bad as real "
          "with wrong connections")
       ->check(CLI::IsMember({"mild", "real", "bad"}));
+}
+
+void add_run_options(CLI::App& app, RunArguments& arguments) {
+  add_rig_option(app, arguments.rig);
+  add_sim_options(app, arguments.sim, "start a simulated rig and send everything there instead of to the devices");
   app.add_option("--sim-ports", arguments.sim_ports, "use the running luxrig-sim that wrote this file")
       ->check(offers_files());
   app.add_option("--plan", arguments.plan, "apply this plan instead of solving")->check(offers_files());

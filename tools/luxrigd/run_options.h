@@ -8,5 +8,7 @@ class App;
 }
 
 namespace luxrig {
+/// --sim, --sim-seed, --sim-deviations. what: --sim in words.
+void add_sim_options(CLI::App& app, SimArguments& sim, const char* what);
 void add_run_options(CLI::App& app, RunArguments& arguments);
 }

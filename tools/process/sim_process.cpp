@@ -3,13 +3,14 @@
 #include <fmt/format.h>
 
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "core/text/plain_text.h"
 #include "tools/http/client.h"
 #include "tools/process/files.h"
+#include "tools/process/status_fields.h"
 
 namespace luxrig {
 namespace {
@@ -20,31 +21,20 @@ Fault fault_of(std::string detail) { return {Cause::system, "luxrig-sim", std::m
 
 Result<SimProcess> SimProcess::start(const std::filesystem::path& rig, std::uint64_t seed,
                                      const std::string& deviations) {
-  std::string folder = (std::filesystem::temp_directory_path() / "luxrig-sim-XXXXXX").string();
-  if (::mkdtemp(folder.data()) == nullptr)
-    return tl::unexpected(fault_of("no temporary folder: " + std::string(std::strerror(errno))));
-  SimProcess made{std::filesystem::path(folder)};
+  SimProcess made;
+  const std::filesystem::path& folder = made.folder_.path();
+  if (folder.empty()) return tl::unexpected(fault_of("no temporary folder: " + std::string(std::strerror(errno))));
   auto child = ChildProcess::start("luxrig-sim",
                                    {rig.string(), "--seed", std::to_string(seed), "--deviations", deviations,
-                                    "--ports-file", (made.folder_ / "ports.json").string(), "--with-parent"},
-                                   {made.folder_ / "log", {}});
+                                    "--ports-file", (folder / "ports.json").string(), "--with-parent"},
+                                   {folder / "log", {}});
   if (!child) return tl::unexpected(child.error());
   made.child_.emplace(std::move(*child));
   return made;
 }
 
-SimProcess::SimProcess(SimProcess&& other) noexcept
-    : folder_(std::exchange(other.folder_, {})), child_(std::exchange(other.child_, std::nullopt)) {}
-
-SimProcess::~SimProcess() {
-  child_.reset();
-  if (folder_.empty()) return;
-  std::error_code ignored;
-  std::filesystem::remove_all(folder_, ignored);
-}
-
 Result<SimPorts> SimProcess::wait_ready(const Watch& watch) {
-  const auto ports_file = folder_ / "ports.json";
+  const auto ports_file = folder_.path() / "ports.json";
   while (true) {
     if (watch.stop.stop_requested()) return tl::unexpected(Fault{Cause::cancelled, "luxrig-sim", "stopped", {}});
     std::error_code error;
@@ -54,8 +44,8 @@ Result<SimPorts> SimProcess::wait_ready(const Watch& watch) {
       return *ports;
     }
     if (const auto code = child_->ended())
-      return tl::unexpected(
-          fault_of(fmt::format("ended before it was ready (exit code {}): {}", *code, tail_of(folder_ / "log"))));
+      return tl::unexpected(fault_of(
+          fmt::format("ended before it was ready (exit code {}): {}", *code, tail_of(folder_.path() / "log"))));
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
 }
@@ -71,6 +61,14 @@ std::optional<SimTruth> ask_truth(const Redirect& control) {
   }
   truth.violations = json["violations"].size();
   return truth;
+}
+
+std::string ask_world(const HttpPeer& control) {
+  const auto answer = http_get(control, "/rig");
+  if (!answer || answer->status != 200) return {};
+  const auto json = nlohmann::json::parse(answer->body, nullptr, false);
+  const std::string world = text_of(json, "world");
+  return is_plain_text(world) ? world : "";
 }
 
 }  // namespace luxrig

@@ -9,8 +9,10 @@
 #include "core/result.h"
 #include "core/run.h"
 #include "drivers/registry.h"
+#include "tools/http/client.h"
 #include "tools/process/child_process.h"
 #include "tools/process/sim_ports.h"
+#include "tools/process/temporary_folder.h"
 
 namespace luxrig {
 
@@ -23,26 +25,25 @@ struct SimTruth {
   std::size_t violations = 0;
 };
 
+/// Ends the simulator with it.
 class SimProcess {
  public:
   /// Starts luxrig-sim from the folder of this program. `seed`: of its deviations.
   /// deviations: as luxrig-sim --deviations.
   [[nodiscard]] static Result<SimProcess> start(const std::filesystem::path& rig, std::uint64_t seed,
                                                 const std::string& deviations = "mild");
-  ~SimProcess();  ///< ends the child
-  SimProcess(SimProcess&& other) noexcept;
-  SimProcess& operator=(SimProcess&&) = delete;
-
   /// Waits until it answers (it computes its own truth first).
   [[nodiscard]] Result<SimPorts> wait_ready(const Watch& watch);
 
  private:
-  explicit SimProcess(std::filesystem::path folder) : folder_(std::move(folder)) {}
-  std::filesystem::path folder_;  ///< its ports file and log
-  std::optional<ChildProcess> child_;
+  SimProcess() = default;
+  TemporaryFolder folder_{};  ///< its ports file and log
+  std::optional<ChildProcess> child_{};
 };
 
 /// Asks the simulator for the true light; nothing if it does not answer.
 [[nodiscard]] std::optional<SimTruth> ask_truth(const Redirect& control);
+/// Which simulated rig this is of all: "real, seed 1". The same words, the same truth. Empty if it does not say.
+[[nodiscard]] std::string ask_world(const HttpPeer& control);
 
 }  // namespace luxrig

@@ -13,10 +13,10 @@
 #include "tools/luxrigd/state/journal.h"
 #include "tools/luxrigd/state/light_store.h"
 #include "tools/process/clock.h"
+#include "tools/process/temporary_folder.h"
 #include "tools/scenario/daemon_process.h"
 #include "tools/scenario/desk_sender.h"
 #include "tools/scenario/served_rig.h"
-#include "tools/scenario/state_folder.h"
 #include "tools/scenario/stepped_bus.h"
 
 namespace luxrig::scenario {
@@ -269,7 +269,7 @@ class LiveVenue final : public Venue {
   const Rig& rig_;
   std::uint64_t seed_;
   std::stop_token stop_;
-  StateFolder folder_;
+  TemporaryFolder folder_;
   std::unique_ptr<ServedRig> served_;
   std::optional<DeskSender> desk_;
   std::unique_ptr<DaemonProcess> daemon_;  ///< null while it is gone

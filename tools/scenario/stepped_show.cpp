@@ -7,7 +7,7 @@
 #include "core/output/dimming.h"
 #include "tools/luxrigd/daemon.h"
 #include "tools/process/clock.h"
-#include "tools/scenario/state_folder.h"
+#include "tools/process/temporary_folder.h"
 #include "tools/scenario/stepped_bus.h"
 
 namespace luxrig::scenario {
@@ -161,7 +161,7 @@ class SteppedVenue final : public Venue {
   bool starts_dark_;
   sim::InProcessRig devices_;
   Wires wires_;
-  std::optional<StateFolder> state_;  ///< only if the daemon ends: saving takes time
+  std::optional<TemporaryFolder> state_;  ///< only if the daemon ends: saving takes time
   std::atomic<Time> time_{};
   std::unique_ptr<Daemon> daemon_;  ///< null while it is gone
   HttpHandlers handlers_;

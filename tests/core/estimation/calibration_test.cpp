@@ -25,6 +25,7 @@ Calibration example() {
   lamp.turn_error_deg = {0.2, 0.2, 0.4};
   lamp.curve = {{0.1, 0.04}, {0.5, 0.42}, {1, 1}};
   lamp.curve_error = 0.01;
+  calibration.simulated = "real, seed 3";
   CalibratedFixture spot;
   spot.name = "spot";
   CalibratedHead& head = spot.head.emplace();

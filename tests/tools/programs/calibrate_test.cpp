@@ -2,6 +2,7 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <csignal>
@@ -33,6 +34,11 @@ TEST(CalibrateOverTheWire, TheNextRunLightsByWhatWasMeasuredAndAStopLeavesNothin
     return s["overrides"].size() == 1 && s["overrides"][0]["name"] == "spot-1" && s["overrides"][0]["level"] == 0.3;
   };
   ASSERT_TRUE(rig.wait_status(as_before, 10s));
+  std::vector<std::string> with_sim = calibrate(path, rig.port());
+  with_sim.emplace_back("--sim");
+  const Ran in_the_way = run(with_sim);
+  EXPECT_EQ(in_the_way.code, 1) << in_the_way.output;
+  EXPECT_NE(in_the_way.output.find("a daemon runs on port"), std::string::npos) << in_the_way.output;
   {
     Process stopped(calibrate(path, rig.port()), folder / "stopped.log");
     ASSERT_TRUE(rig.wait_status([](const json& s) { return s["overrides"].size() == 3; }, 60s)) << stopped.output();
@@ -76,6 +82,34 @@ TEST(CalibrateOverTheWire, TheNextRunLightsByWhatWasMeasuredAndAStopLeavesNothin
   ASSERT_TRUE(rig.wait_phase("holding", 90s)) << rig.daemon().output();
   EXPECT_EQ(rig.last()["calibrated"], calibration["made"]);
   EXPECT_NE(rig.daemon().output().find("as calibrated"), std::string::npos) << rig.daemon().output();
+
+  // It says nothing of another rig, least of all of the real one.
+  EXPECT_EQ(calibration["simulated"], "mild, seed 3");
+  const Ran real = run({program("luxrig"), "run", path, "--port", "0"});
+  EXPECT_EQ(real.code, 2) << real.output;
+  EXPECT_NE(real.output.find("was measured on a simulated rig (mild, seed 3), this is the real one"), std::string::npos)
+      << real.output;
+  const Ran other = run({program("luxrig"), "run", path, "--sim", "--port", "0", "--max-error", "0.1"});
+  EXPECT_EQ(other.code, 2) << other.output;
+  EXPECT_NE(other.output.find("this is another (mild, seed 1)"), std::string::npos) << other.output;
+}
+
+TEST(CalibrateOverTheWire, OfASimulatedRigItBringsRigAndDaemonWithIt) {
+  const Folder folder;
+  std::filesystem::copy(source("tests/rigs/room"), folder / "room", std::filesystem::copy_options::recursive);
+  const std::string path = (folder / "room").string();
+  // Below those that the kernel gives to others.
+  const int port = 21000 + ::getpid() % 9000;
+  std::vector<std::string> words = calibrate(path, port);
+  for (const char* word : {"--sim", "--sim-seed", "5", "--sim-deviations", "real"}) words.emplace_back(word);
+  const Ran measured = run(words, 180s);
+  ASSERT_EQ(measured.code, 0) << measured.output;
+  EXPECT_NE(measured.output.find("--sim --sim-deviations real --sim-seed 5"), std::string::npos) << measured.output;
+  const json calibration = json::parse(text_of(folder / "room" / "calibration.json"), nullptr, false);
+  ASSERT_TRUE(calibration.is_object());
+  EXPECT_EQ(calibration["simulated"], "real, seed 5");
+  const auto daemon = daemon_on(port);
+  EXPECT_FALSE(daemon && http_get(*daemon, "/api/status")) << "the daemon ends with it";
 }
 
 /// The room with a wide camera that sees enough of it, and two boxes more on its walls.

@@ -19,10 +19,13 @@
 #include "tools/luxrig/calibrate/by_heads.h"
 #include "tools/luxrig/calibrate/daemon_rig.h"
 #include "tools/luxrig/calibrate/hand_meter.h"
+#include "tools/luxrig/calibrate/simulated_run.h"
 #include "tools/luxrig/commands.h"
 #include "tools/luxrig/compute_arguments.h"
 #include "tools/luxrig/open_session.h"
+#include "tools/luxrigd/run_options.h"
 #include "tools/process/files.h"
+#include "tools/process/sim_process.h"
 #include "tools/terminal/command.h"
 #include "tools/terminal/table.h"
 #include "tools/terminal/terminal_watch.h"
@@ -33,6 +36,7 @@ namespace {
 struct CalibrateArguments {
   std::filesystem::path rig;
   ClientArguments client;
+  SimArguments sim;
   ComputeOptions compute;
   bool meters = false, hand = false;  ///< neither, and no camera = meters
   std::string hours = "closed";
@@ -193,6 +197,11 @@ Result<std::vector<MeasuredHead>> by_heads(const Measuring& measuring) {
   return heads;
 }
 
+std::string world_of(const HttpPeer& sim_control) {
+  const std::string world = ask_world(sim_control);
+  return world.empty() ? "one that does not say which" : world;
+}
+
 /// Heads that were found, and those that were before and were not measured again.
 void put_heads(const Rig& rig, const std::vector<MeasuredHead>& heads, const std::filesystem::path& file,
                Calibration& found) {
@@ -302,6 +311,12 @@ int run_calibrate(const CalibrateArguments& arguments) {
     fmt::print(stderr, "luxrig: by hand and by camera, lamps go on alone: that takes --hours closed\n");
     return kExitBadInput;
   }
+  std::optional<SimulatedRun> simulated;
+  if (arguments.sim.start) {
+    auto run = SimulatedRun::start(arguments.rig, arguments.sim, arguments.client.port, stop);
+    if (!run) return report(run.error());
+    simulated.emplace(std::move(*run));
+  }
   auto daemon = DaemonRig::of(arguments.client, rig);
   if (!daemon) return report_unreachable(daemon.error());
 
@@ -351,6 +366,7 @@ int run_calibrate(const CalibrateArguments& arguments) {
   const auto file = arguments.file.value_or(calibration_file(rig));
   if (auto kept = keep_old(file); !kept) return report(kept.error());
   Calibration found = calibration_of(*session, *light, measuring.curves, utc_now());
+  if (daemon->sim_control()) found.simulated = world_of(*daemon->sim_control());
   put_heads(rig, heads, file, found);
   if (auto written = write_file(file, to_json(found)); !written) return report(written.error());
   CalibrationReport told =
@@ -364,7 +380,10 @@ int run_calibrate(const CalibrateArguments& arguments) {
   print_report(measuring, before.error_of_goals(measuring.levels.use), told);
   fmt::print("Written: {}\nHow good it is, as a page: {}\n{}\n", file.string(), page.string(),
              arguments.file ? "It is in use once it lies beside the rig file, as calibration.json."
-                            : "Start luxrig run anew to light the rig by it.");
+             : arguments.sim.start
+                 ? fmt::format("Light this simulated rig by it: luxrig run {} --sim --sim-deviations {} --sim-seed {}",
+                               arguments.rig.string(), arguments.sim.deviations, arguments.sim.seed)
+                 : "Start luxrig run anew to light the rig by it.");
   return kExitOk;
 }
 
@@ -372,6 +391,8 @@ Action declare_calibrate(CLI::App& command) {
   const auto calibrate = std::make_shared<CalibrateArguments>();
   add_rig_option(command, calibrate->rig);
   add_client_without_json(command, calibrate->client);
+  add_sim_options(command, calibrate->sim,
+                  "start a simulated rig and a daemon for it, and measure that; else a running daemon's rig");
   add_compute(command, calibrate->compute);
   command.add_flag("--meters", calibrate->meters, "by the luxmeters that hang (default without --hand)");
   command.add_flag("--hand", calibrate->hand,
