@@ -23,10 +23,20 @@ std::string words_of(const LampStep& step, const Rig& rig) {
   return fmt::format("\"{}\" alone at level {:.3g}", rig.fixtures[step.fixture].name, step.level);
 }
 
-std::vector<double> levels_of(const LampStep& step, const Rig& rig) {
+std::vector<double> levels_of(const LampStep& step, const Rig& rig) { return levels_of(std::span(&step, 1), rig); }
+
+std::vector<double> levels_of(std::span<const LampStep> lit, const Rig& rig) {
   std::vector<double> level(rig.fixtures.size(), 0.0);
-  level[step.fixture] = step.level;
+  for (const LampStep& step : lit) level[step.fixture] = step.level;
   return level;
+}
+
+bool keeps_limits(const Rig& rig, const Eigen::MatrixXd& stated_lux, const Eigen::VectorXd& level) {
+  for (std::size_t p = 0; p < rig.points.size(); ++p)
+    if (rig.points[p].max_lx &&
+        kStrongest * stated_lux.row(static_cast<Eigen::Index>(p)).dot(level) > *rig.points[p].max_lx)
+      return false;
+  return true;
 }
 
 std::vector<double> brightest_levels(const Rig& rig, const Eigen::MatrixXd& stated_lux) {

@@ -20,10 +20,15 @@ struct LampStep {
 [[nodiscard]] std::string words_of(const LampStep& step, const Rig& rig);
 /// Levels of all fixtures.
 [[nodiscard]] std::vector<double> levels_of(const LampStep& step, const Rig& rig);
+/// The same for several lamps at once; none = every lamp is dark.
+[[nodiscard]] std::vector<double> levels_of(std::span<const LampStep> lit, const Rig& rig);
 
 /// Per fixture, the brightest level at which it may be measured alone: lamps may be a third stronger than stated, and no
 /// limit is exceeded. stated_lux: RigLight::stated_lux().
 [[nodiscard]] std::vector<double> brightest_levels(const Rig& rig, const Eigen::MatrixXd& stated_lux);
+
+/// Whether these levels keep every limit, if lamps are a third stronger than stated.
+[[nodiscard]] bool keeps_limits(const Rig& rig, const Eigen::MatrixXd& stated_lux, const Eigen::VectorXd& level);
 
 /// Shares of the brightest level at which a curve is read, brightest first. Few: between any two a dimmer is nearly a
 /// power.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "core/check.h"
@@ -13,47 +14,51 @@ namespace {
 
 using Eigen::Index;
 
-/// The dark is measured anew after so many lamps, as daylight and meters drift.
-constexpr std::size_t kLampsPerDark = 4;
+/// The dark is measured anew after so many lights, as daylight and meters drift.
+constexpr std::size_t kLightsPerDark = 8;
 /// A level at which the best luxmeter would show less says nothing of a dimmer.
 constexpr double kSeen_lx = 0.2;
+/// Light at half level is at most this share of that at the full one, whatever the dimmer.
+constexpr double kMostAtHalf = 0.6;
 
 }  // namespace
 
-MeterRun::MeterRun(const Rig& rig, std::span<const double> brightest, const Eigen::MatrixXd& stated_lux)
-    : rig_(&rig), curves_(rig.fixtures.size()) {
+MeterRun::MeterRun(const Rig& rig, std::span<const double> brightest, Eigen::MatrixXd stated_lux)
+    : rig_(&rig),
+      brightest_(brightest.begin(), brightest.end()),
+      stated_lux_(std::move(stated_lux)),
+      alone_at_(rig.fixtures.size()),
+      curves_(rig.fixtures.size()) {
   LUXRIG_CHECK(brightest.size() == rig.fixtures.size(), "levels of {} fixtures", brightest.size());
-  const auto meters = static_cast<Index>(rig.luxmeters.size());
   for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
-    if (f % kLampsPerDark == 0) plan_.push_back({0, 0});
     if (!(brightest[f] > 0)) continue;
-    const double most_lx = meters > 0 ? stated_lux.col(static_cast<Index>(f)).tail(meters).maxCoeff() : 0;
-    for (const double share : kCurveShares) {
-      if (share < 1 && (rig.fixtures[f].switched || most_lx * brightest[f] * share < kSeen_lx)) break;
-      plan_.push_back({f, share * brightest[f]});
-    }
+    add({{f, brightest[f]}});
+    alone_at_[f] = plan_.size() - 1;
   }
 }
 
-void MeterRun::take(double level, std::span<const std::optional<SteadyReading>> readings) {
-  LUXRIG_CHECK(taken_.size() < plan_.size() && readings.size() == rig_->luxmeters.size(), "step {} of {}: {} readings",
-               taken_.size(), plan_.size(), readings.size());
-  taken_.push_back({plan_[taken_.size()].level > 0 ? level : 0.0, {readings.begin(), readings.end()}});
+void MeterRun::add(std::vector<LampStep> lit) {
+  const std::size_t recent = std::min(plan_.size(), kLightsPerDark);
+  if (std::none_of(plan_.end() - static_cast<std::ptrdiff_t>(recent), plan_.end(),
+                   [](const std::vector<LampStep>& light) { return light.empty(); }))
+    plan_.emplace_back();
+  plan_.push_back(std::move(lit));
+}
+
+void MeterRun::take(std::span<const double> sent, std::span<const std::optional<SteadyReading>> readings) {
+  LUXRIG_CHECK(
+      taken_.size() < plan_.size() && sent.size() == rig_->fixtures.size() && readings.size() == rig_->luxmeters.size(),
+      "light {} of {}: {} levels, {} readings", taken_.size(), plan_.size(), sent.size(), readings.size());
+  taken_.push_back({{sent.begin(), sent.end()}, {readings.begin(), readings.end()}});
   if (taken_.size() < plan_.size()) return;
-  for (std::size_t first = 0; first < plan_.size();) {
-    std::size_t end = first + 1;
-    if (plan_[first].level > 0) {
-      while (end < plan_.size() && plan_[end].level > 0 && plan_[end].fixture == plan_[first].fixture) ++end;
-      curves_[plan_[first].fixture] = curve_of_steps(first, end);
-    }
-    first = end;
-  }
+  if (first_of_curves_ == 0) plan_curves();
+  if (taken_.size() == plan_.size()) find_curves();
 }
 
-std::optional<SteadyReading> MeterRun::above_dark(std::size_t step, std::size_t luxmeter) const {
-  const auto& lit = taken_[step].readings[luxmeter];
-  for (std::size_t k = step; lit && k-- > 0;) {
-    if (plan_[k].level > 0) continue;
+std::optional<SteadyReading> MeterRun::above_dark(std::size_t light, std::size_t luxmeter) const {
+  const auto& lit = taken_[light].readings[luxmeter];
+  for (std::size_t k = light; lit && k-- > 0;) {
+    if (!plan_[k].empty()) continue;
     const auto& dark = taken_[k].readings[luxmeter];
     if (!dark) continue;
     return SteadyReading{lit->lux - dark->lux, std::hypot(lit->standard_error_lx, dark->standard_error_lx)};
@@ -61,31 +66,77 @@ std::optional<SteadyReading> MeterRun::above_dark(std::size_t step, std::size_t 
   return std::nullopt;
 }
 
-LampCurve MeterRun::curve_of_steps(std::size_t first, std::size_t end) const {
-  std::optional<std::size_t> best;
-  double least = 1;
-  for (std::size_t m = 0; m < rig_->luxmeters.size(); ++m) {
-    const auto full = above_dark(first, m);
-    if (!full || !(full->lux > 0) || full->standard_error_lx / full->lux > least) continue;
-    least = full->standard_error_lx / full->lux;
-    best = m;
+void MeterRun::plan_curves() {
+  first_of_curves_ = plan_.size();
+  const auto meters = static_cast<Index>(rig_->luxmeters.size()), fixtures = static_cast<Index>(rig_->fixtures.size());
+  alone_.lux.setConstant(meters, fixtures, std::numeric_limits<double>::quiet_NaN());
+  alone_.standard_error_lx = alone_.lux;
+  for (std::size_t f = 0; f < rig_->fixtures.size(); ++f) {
+    if (!alone_at_[f] || rig_->fixtures[f].switched || !(taken_[*alone_at_[f]].sent[f] > 0)) continue;
+    for (std::size_t m = 0; m < rig_->luxmeters.size(); ++m) {
+      const auto lit = above_dark(*alone_at_[f], m);
+      if (!lit) continue;
+      alone_.lux(static_cast<Index>(m), static_cast<Index>(f)) = lit->lux;
+      alone_.standard_error_lx(static_cast<Index>(m), static_cast<Index>(f)) = lit->standard_error_lx;
+    }
   }
-  std::vector<ReadAtLevel> read;
-  for (std::size_t step = first; best && step < end; ++step)
-    if (const auto lit = above_dark(step, *best)) read.push_back({taken_[step].level, *lit});
-  return curve_of(read);
+  const auto may = [&](std::span<const std::size_t> lamps) {
+    Eigen::VectorXd level = Eigen::VectorXd::Zero(fixtures);
+    for (const std::size_t f : lamps) level[static_cast<Index>(f)] = kMostAtHalf * brightest_[f];
+    return keeps_limits(*rig_, stated_lux_, level);
+  };
+  for (const std::vector<std::size_t>& group : curve_groups(alone_, may)) {
+    for (const double share : std::span(kCurveShares).subspan(1)) {
+      std::vector<LampStep> lit;
+      for (const std::size_t f : group) {
+        // A meter that has not read it has NaN, which is not more.
+        double most_lx = 0;
+        for (Index m = 0; m < meters; ++m) most_lx = std::max(most_lx, alone_.lux(m, static_cast<Index>(f)));
+        if (most_lx * share >= kSeen_lx) lit.push_back({f, share * brightest_[f]});
+      }
+      if (!lit.empty()) add(std::move(lit));
+    }
+  }
+}
+
+void MeterRun::find_curves() {
+  std::vector<std::vector<ReadAtLevel>> read(rig_->fixtures.size());
+  // Of full light, by the meter that knows it best.
+  for (std::size_t f = 0; f < read.size(); ++f) {
+    double least = 1;
+    for (std::size_t m = 0; alone_at_[f] && m < rig_->luxmeters.size(); ++m) {
+      const double lux = alone_.lux(static_cast<Index>(m), static_cast<Index>(f));
+      const double error_lx = alone_.standard_error_lx(static_cast<Index>(m), static_cast<Index>(f));
+      if (!(lux > 0) || error_lx / lux > least) continue;
+      least = error_lx / lux;
+      read[f] = {{taken_[*alone_at_[f]].sent[f], {lux, error_lx}}};
+    }
+  }
+  for (std::size_t light = first_of_curves_; light < plan_.size(); ++light) {
+    std::vector<std::size_t> lamps;
+    for (const LampStep& step : plan_[light]) lamps.push_back(step.fixture);
+    if (lamps.empty()) continue;
+    std::vector<std::optional<SteadyReading>> readings;
+    for (std::size_t m = 0; m < rig_->luxmeters.size(); ++m) readings.push_back(above_dark(light, m));
+    const std::vector<ShareOfAlone> shares = shares_of(alone_, lamps, readings);
+    for (std::size_t k = 0; k < shares.size(); ++k) {
+      std::vector<ReadAtLevel>& of_lamp = read[lamps[k]];
+      if (of_lamp.empty()) continue;
+      const double full_lx = of_lamp.front().light.lux;
+      of_lamp.push_back(
+          {taken_[light].sent[lamps[k]], {shares[k].value * full_lx, shares[k].standard_error * full_lx}});
+    }
+  }
+  for (std::size_t f = 0; f < read.size(); ++f) curves_[f] = curve_of(read[f]);
 }
 
 std::vector<LightReading> MeterRun::readings() const {
-  LUXRIG_CHECK(taken_.size() == plan_.size(), "{} of {} steps are measured", taken_.size(), plan_.size());
+  LUXRIG_CHECK(taken_.size() == plan_.size(), "{} of {} lights are measured", taken_.size(), plan_.size());
   std::vector<LightReading> readings;
-  for (std::size_t step = 0; step < plan_.size(); ++step) {
-    const LampStep& asked = plan_[step];
-    const bool brightest =
-        asked.level > 0 && (step == 0 || plan_[step - 1].fixture != asked.fixture || !(plan_[step - 1].level > 0));
-    if (!brightest || !(taken_[step].level > 0)) continue;
+  for (std::size_t f = 0; f < rig_->fixtures.size(); ++f) {
+    if (!alone_at_[f] || !(taken_[*alone_at_[f]].sent[f] > 0)) continue;
     for (std::size_t m = 0; m < rig_->luxmeters.size(); ++m) {
-      const auto lit = above_dark(step, m);
+      const auto lit = above_dark(*alone_at_[f], m);
       if (!lit) continue;
       LightReading reading;
       reading.receiver = rig_->points.size() + m;
@@ -93,8 +144,7 @@ std::vector<LightReading> MeterRun::readings() const {
       reading.lux = lit->lux;
       reading.standard_error_lx = std::max(lit->standard_error_lx, 1e-6);
       reading.level.setZero(static_cast<Index>(rig_->fixtures.size()));
-      reading.level[static_cast<Index>(asked.fixture)] =
-          share_at_level(curves_[asked.fixture].of_level, taken_[step].level);
+      reading.level[static_cast<Index>(f)] = share_at_level(curves_[f].of_level, taken_[*alone_at_[f]].sent[f]);
       readings.push_back(std::move(reading));
     }
   }

@@ -1,6 +1,7 @@
 #pragma once
-/// One lamp after the other at a few levels, read by the luxmeters that hang: what to set next, and what follows from it.
-/// It neither sets nor reads anything itself, so it is the same on a stepped clock, in a program and in a test.
+/// All lamps, read by the luxmeters that hang: what to set next, and what follows from it. First each lamp alone, then
+/// dimmed ones, together where the meters tell them apart (curve_groups.h). It neither sets nor reads anything itself, so
+/// it is the same on a stepped clock, in a program and in a test.
 
 #include <Eigen/Core>
 #include <optional>
@@ -8,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/calibration/curve_groups.h"
 #include "core/calibration/lamp_steps.h"
 #include "core/calibration/light_unknowns.h"
 #include "core/calibration/rig_light.h"
@@ -18,33 +20,40 @@ namespace luxrig {
 
 class MeterRun {
  public:
-  /// brightest: brightest_levels(). Lamps at 0 are not measured. stated_lux: RigLight::stated_lux(); levels at which no
-  /// luxmeter would see light are left out.
-  MeterRun(const Rig& rig, std::span<const double> brightest, const Eigen::MatrixXd& stated_lux);
+  /// brightest: brightest_levels(). Lamps at 0 are not measured. stated_lux: RigLight::stated_lux().
+  MeterRun(const Rig& rig, std::span<const double> brightest, Eigen::MatrixXd stated_lux);
 
-  /// Lights to set one after the other.
-  [[nodiscard]] const std::vector<LampStep>& plan() const { return plan_; }
-  /// What the meters showed under the next of them. level: of its fixture, as sent. readings: per luxmeter; none = not
-  /// steady, or gone.
-  void take(double level, std::span<const std::optional<SteadyReading>> readings);
+  /// Lights to set one after the other, each as the lamps that are lit. It grows once all of them are taken: then lamps are
+  /// dimmed, in groups that follow from what each gives alone. Whoever has taken all of a plan that has not grown is done.
+  [[nodiscard]] const std::vector<std::vector<LampStep>>& plan() const { return plan_; }
+  /// What the meters showed under the next of them. sent: levels of all fixtures. readings: per luxmeter; none = not steady,
+  /// or gone.
+  void take(std::span<const double> sent, std::span<const std::optional<SteadyReading>> readings);
 
   /// Per fixture; not measured of lamps that no meter sees well enough.
   [[nodiscard]] const std::vector<LampCurve>& curves() const { return curves_; }
-  /// For LightUnknowns: each lamp's brightest step. Call it when all is measured.
+  /// For LightUnknowns: each lamp alone at its brightest. Call it when all is measured.
   [[nodiscard]] std::vector<LightReading> readings() const;
 
  private:
   struct Taken {
-    double level = 0;  ///< of that fixture, as sent
+    std::vector<double> sent;
     std::vector<std::optional<SteadyReading>> readings;
   };
-  /// Of the steps of one lamp, by the meter that sees it best.
-  [[nodiscard]] LampCurve curve_of_steps(std::size_t first, std::size_t end) const;
-  /// Of this step without the dark, by the last dark before it; none = not read.
-  [[nodiscard]] std::optional<SteadyReading> above_dark(std::size_t step, std::size_t luxmeter) const;
+  /// Adds a light, and darkness before it if the last is long ago.
+  void add(std::vector<LampStep> lit);
+  void plan_curves();
+  void find_curves();
+  /// Of this light without the dark, by the last dark before it; none = not read.
+  [[nodiscard]] std::optional<SteadyReading> above_dark(std::size_t light, std::size_t luxmeter) const;
 
   const Rig* rig_;
-  std::vector<LampStep> plan_;
+  std::vector<double> brightest_;
+  Eigen::MatrixXd stated_lux_;
+  std::vector<std::vector<LampStep>> plan_;
+  std::vector<std::optional<std::size_t>> alone_at_;  ///< per fixture: of plan_
+  std::size_t first_of_curves_ = 0;                   ///< of plan_; 0 = not planned yet
+  LightAlone alone_;
   std::vector<Taken> taken_;
   std::vector<LampCurve> curves_;
 };

@@ -42,15 +42,15 @@ class Bench {
  public:
   Bench(sim::World& world, const Rig& rig) : world_(world), rig_(rig), now_(world.now()) {}
 
-  /// Readings of all luxmeters under one light after the other; per step.
-  std::vector<std::vector<std::optional<SteadyReading>>> read(std::span<const LampStep> plan,
+  /// Readings of all luxmeters under one light after the other (levels of all fixtures); per light.
+  std::vector<std::vector<std::optional<SteadyReading>>> read(std::span<const std::vector<double>> plan,
                                                               std::span<const double> together) {
-    const std::vector<std::optional<MeterTiming>> timing = learn_timing(together);
-    const double dwell = dwell_s(timing);
+    if (timing_.empty()) timing_ = learn_timing(together);
+    const double dwell = dwell_s(timing_);
     for (auto& samples : samples_) samples.clear();
-    ReadingLog log(timing);
-    for (const LampStep& step : plan) {
-      send(levels_of(step, rig_));
+    ReadingLog log(timing_);
+    for (const std::vector<double>& level : plan) {
+      send(level);
       watch(kRamp_s);
       const double arrived_s = seconds();
       watch(dwell);
@@ -107,6 +107,7 @@ class Bench {
   const Rig& rig_;
   Time now_;
   std::vector<std::vector<TimedLux>> samples_{rig_.luxmeters.size()};  ///< per luxmeter
+  std::vector<std::optional<MeterTiming>> timing_;                     ///< learnt at the first reading
 };
 
 /// A person holds a meter at places that are chosen one after the other, or at random.
@@ -175,8 +176,13 @@ Result<MeasuredRig> measure_rig(sim::World& world, const Session& session, const
   Bench bench(world, rig);
   MeasuredRig measured{MeterRun(rig, brightest, stated_lux), levels_of_use(brightest), {}, {}, 0, {}};
   Photographer camera(seen, session, world, true_rays, deviations);
-  const auto read = bench.read(measured.run.plan(), levels_of_use(brightest));
-  for (std::size_t k = 0; k < read.size(); ++k) measured.run.take(measured.run.plan()[k].level, read[k]);
+  for (std::size_t taken = 0; taken < measured.run.plan().size();) {
+    std::vector<std::vector<double>> lights;
+    for (const auto& lit : std::span(measured.run.plan()).subspan(taken)) lights.push_back(levels_of(lit, rig));
+    const auto read = bench.read(lights, levels_of_use(brightest));
+    for (std::size_t k = 0; k < read.size(); ++k) measured.run.take(lights[k], read[k]);
+    taken += read.size();
+  }
   measured.rig_seconds = bench.seconds();
   std::vector<double> alone(rig.fixtures.size(), 0.0);
   const VectorXd dark_lx = bench.truth_lx(alone);

@@ -110,8 +110,8 @@ Fault during(const LampStep& step, const Rig& rig, const Fault& fault) {
   return {fault.cause, "", words_of(step, rig) + ": " + fault.detail, {}};
 }
 
-std::function<void(std::size_t)> progress_of(std::size_t steps) {
-  return [steps, progress = progress_line("measuring")](std::size_t done) {
+std::function<void(std::size_t)> progress_of(const char* what, std::size_t steps) {
+  return [steps, progress = progress_line(what)](std::size_t done) {
     if (progress) progress(static_cast<double>(done) / static_cast<double>(steps));
   };
 }
@@ -164,11 +164,16 @@ Result<void> by_meters_in_open_hours(Measuring& measuring, double minutes) {
 Result<void> by_hanging_meters(Measuring& measuring) {
   const Rig& rig = measuring.session.rig;
   MeterRun run(rig, measuring.levels.brightest, measuring.light.stated_lux());
-  std::vector<std::vector<double>> lights;
-  for (const LampStep& step : run.plan()) lights.push_back(levels_of(step, rig));
-  const auto read = measuring.daemon.measure(lights, together(measuring), progress_of(lights.size()), measuring.stop);
-  if (!read) return tl::unexpected(read.error());
-  for (std::size_t k = 0; k < read->size(); ++k) run.take((*read)[k].sent[run.plan()[k].fixture], (*read)[k].readings);
+  for (std::size_t taken = 0; taken < run.plan().size();) {
+    const char* what = taken == 0 ? "measuring each lamp alone" : "measuring dimmers";
+    std::vector<std::vector<double>> lights;
+    for (const auto& lit : std::span(run.plan()).subspan(taken)) lights.push_back(levels_of(lit, rig));
+    const auto read =
+        measuring.daemon.measure(lights, together(measuring), progress_of(what, lights.size()), measuring.stop);
+    if (!read) return tl::unexpected(read.error());
+    for (const DaemonRig::Read& light : *read) run.take(light.sent, light.readings);
+    taken += read->size();
+  }
   measuring.curves = run.curves();
   std::vector<LightReading> readings = run.readings();
   measuring.any = measuring.any || !readings.empty();

@@ -241,15 +241,15 @@ Result<std::vector<DaemonRig::Read>> DaemonRig::measure(std::span<const std::vec
                                                         std::span<const double> together,
                                                         const std::function<void(std::size_t)>& tell,
                                                         const std::stop_token& stop) {
-  Timings timing(samples_.size(), MeterTiming{0, kSlowestMeter_s, kSlowestPeriod_s});
-  if (!together.empty()) {
+  if (!together.empty() && !timing_) {
     auto learnt = learn_timing(together, stop);
     if (!learnt) return tl::unexpected(learnt.error());
-    timing = std::move(*learnt);
+    timing_ = std::move(*learnt);
   }
+  const Timings timing = timing_.value_or(Timings(samples_.size(), MeterTiming{0, kSlowestMeter_s, kSlowestPeriod_s}));
   const double dwell = std::max(kShortestDwell_s, dwell_s(timing));
   for (auto& samples : samples_) samples.clear();
-  ReadingLog log(std::move(timing));
+  ReadingLog log(timing);
   std::vector<Read> read;
   for (const std::vector<double>& level : plan) {
     if (tell) tell(read.size());

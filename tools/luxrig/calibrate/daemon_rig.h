@@ -53,8 +53,8 @@ class DaemonRig {
     std::vector<double> sent;                            ///< per fixture
     std::vector<std::optional<SteadyReading>> readings;  ///< per luxmeter; none = not steady, or gone
   };
-  /// Sets one light after the other (levels of all fixtures) and reads all luxmeters. Before, all lamps go on to
-  /// `together`, which shows how late each meter is; if that is empty, each is taken to be as late as any.
+  /// Sets one light after the other (levels of all fixtures) and reads all luxmeters. Before the first of them, all lamps go
+  /// on to `together`, which shows how late each meter is; if that is empty, each is taken to be as late as any.
   /// tell: steps so far.
   [[nodiscard]] Result<std::vector<Read>> measure(std::span<const std::vector<double>> plan,
                                                   std::span<const double> together,
@@ -84,6 +84,7 @@ class DaemonRig {
   std::vector<double> held_{};
   double fade_s_ = kQuickFade_s;
   std::vector<std::vector<TimedLux>> samples_{};  ///< per luxmeter
+  std::optional<Timings> timing_{};
   std::optional<HttpPeer> sim_control_{};
 };
 
