@@ -126,28 +126,33 @@ std::vector<ShareOfAlone> shares_of(const LightAlone& alone, std::span<const std
   std::vector<Index> meters = meters_of(alone, lamps);
   std::erase_if(meters, [&](Index m) { return !above_dark[static_cast<std::size_t>(m)]; });
   const auto rows = static_cast<Index>(meters.size());
-  VectorXd lux(rows), error_lx(rows), share;
+  VectorXd lux(rows), error_lx(rows);
   for (Index m = 0; m < rows; ++m) {
     const SteadyReading& reading = *above_dark[static_cast<std::size_t>(meters[static_cast<std::size_t>(m)])];
     lux[m] = reading.lux;
     error_lx[m] = std::max(reading.standard_error_lx, 1e-6);
   }
-  MatrixXd light;
-  // What each lamp gives alone has an error too, which counts by its share: taken from the shares without it.
-  for (int pass = 0; pass < 2; ++pass) {
-    VectorXd error = error_lx;
-    for (Index m = 0; pass > 0 && m < rows; ++m)
-      for (std::size_t k = 0; k < lamps.size(); ++k)
-        error[m] = std::hypot(
-            error[m], share[static_cast<Index>(k)] *
-                          alone.standard_error_lx(meters[static_cast<std::size_t>(m)], static_cast<Index>(lamps[k])));
-    light = weighted(alone, lamps, meters, error);
-    if (!errors_of_shares(light).allFinite()) return {};
-    share = (light.transpose() * light).ldlt().solve(light.transpose() * lux.cwiseQuotient(error));
-  }
-  const VectorXd errors = errors_of_shares(light);
+  const MatrixXd light = weighted(alone, lamps, meters, error_lx);
+  if (!errors_of_shares(light).allFinite()) return {};
+  // shares = from · lux
+  const MatrixXd from =
+      (light.transpose() * light).ldlt().solve(light.transpose()) * error_lx.cwiseInverse().asDiagonal();
+  const VectorXd share = from * lux;
   std::vector<ShareOfAlone> shares;
-  for (Index k = 0; k < share.size(); ++k) shares.push_back({share[k], errors[k]});
+  for (Index k = 0; k < share.size(); ++k) {
+    double variance = 0;
+    for (Index m = 0; m < rows; ++m) {
+      double error = error_lx[m];
+      // What another lamp gives alone has an error too, which counts by that lamp's share.
+      for (Index other = 0; other < share.size(); ++other)
+        if (other != k)
+          error = std::hypot(error, share[other] * alone.standard_error_lx(
+                                                       meters[static_cast<std::size_t>(m)],
+                                                       static_cast<Index>(lamps[static_cast<std::size_t>(other)])));
+      variance += from(k, m) * from(k, m) * error * error;
+    }
+    shares.push_back({share[k], std::sqrt(variance)});
+  }
   return shares;
 }
 

@@ -4,7 +4,7 @@
 ///
 ///   reading(meter) = Σ_lamps share(lamp) · alone(meter, lamp)
 ///
-/// Weighted least squares, and its covariance. Which lamps go together is chosen so that none is read much worse than alone.
+/// Weighted least squares. Which lamps go together is chosen so that none is read much worse than alone.
 
 #include <Eigen/Core>
 #include <cstddef>
@@ -28,11 +28,12 @@ struct LightAlone {
     const LightAlone& alone, const std::function<bool(std::span<const std::size_t>)>& may);
 
 struct ShareOfAlone {
-  double value = 0, standard_error = 0;
+  double value = 0;
+  double standard_error = 0;  ///< but for that of its own light alone, which all its shares have in common
 };
 
-/// Of each of these lamps, its light under this reading over that alone. above_dark: per luxmeter; none = not read. Empty if
-/// the readings do not tell.
+/// Of each of these lamps, its light under this reading over that alone. above_dark: per luxmeter; none = not read. Empty
+/// if the readings do not tell.
 [[nodiscard]] std::vector<ShareOfAlone> shares_of(const LightAlone& alone, std::span<const std::size_t> lamps,
                                                   std::span<const std::optional<SteadyReading>> above_dark);
 

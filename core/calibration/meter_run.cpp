@@ -33,7 +33,7 @@ MeterRun::MeterRun(const Rig& rig, std::span<const double> brightest, Eigen::Mat
   for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
     if (!(brightest[f] > 0)) continue;
     add({{f, brightest[f]}});
-    alone_at_[f] = plan_.size() - 1;
+    alone_at_[f] = {plan_.size() - 1};
   }
 }
 
@@ -51,7 +51,15 @@ void MeterRun::take(std::span<const double> sent, std::span<const std::optional<
       "light {} of {}: {} levels, {} readings", taken_.size(), plan_.size(), sent.size(), readings.size());
   taken_.push_back({{sent.begin(), sent.end()}, {readings.begin(), readings.end()}});
   if (taken_.size() < plan_.size()) return;
-  if (first_of_curves_ == 0) plan_curves();
+  if (stage_ == Stage::alone) {
+    stage_ = Stage::again;
+    plan_again();
+    if (taken_.size() < plan_.size()) return;
+  }
+  if (stage_ == Stage::again) {
+    stage_ = Stage::dimmed;
+    plan_curves();
+  }
   if (taken_.size() == plan_.size()) find_curves();
 }
 
@@ -66,15 +74,43 @@ std::optional<SteadyReading> MeterRun::above_dark(std::size_t light, std::size_t
   return std::nullopt;
 }
 
+std::optional<SteadyReading> MeterRun::light_alone(std::size_t fixture, std::size_t luxmeter) const {
+  for (auto light = alone_at_[fixture].rbegin(); light != alone_at_[fixture].rend(); ++light)
+    if (auto read = above_dark(*light, luxmeter)) return read;
+  return std::nullopt;
+}
+
+double MeterRun::level_alone(std::size_t fixture) const {
+  return alone_at_[fixture].empty() ? 0 : taken_[alone_at_[fixture].back()].sent[fixture];
+}
+
+void MeterRun::plan_again() {
+  std::vector<std::size_t> lamps;
+  for (std::size_t m = 0; m < rig_->luxmeters.size(); ++m) {
+    const auto reads = [&](const Taken& taken) { return taken.readings[m].has_value(); };
+    // One that reads seldom will not read then.
+    if (2 * static_cast<std::size_t>(std::count_if(taken_.begin(), taken_.end(), reads)) < taken_.size()) continue;
+    for (std::size_t f = 0; f < rig_->fixtures.size(); ++f)
+      if (level_alone(f) > 0 && !light_alone(f, m)) lamps.push_back(f);
+  }
+  std::sort(lamps.begin(), lamps.end());
+  lamps.erase(std::unique(lamps.begin(), lamps.end()), lamps.end());
+  if (!lamps.empty()) plan_.emplace_back();
+  for (const std::size_t f : lamps) {
+    add({{f, brightest_[f]}});
+    alone_at_[f].push_back(plan_.size() - 1);
+  }
+}
+
 void MeterRun::plan_curves() {
   first_of_curves_ = plan_.size();
   const auto meters = static_cast<Index>(rig_->luxmeters.size()), fixtures = static_cast<Index>(rig_->fixtures.size());
   alone_.lux.setConstant(meters, fixtures, std::numeric_limits<double>::quiet_NaN());
   alone_.standard_error_lx = alone_.lux;
   for (std::size_t f = 0; f < rig_->fixtures.size(); ++f) {
-    if (!alone_at_[f] || rig_->fixtures[f].switched || !(taken_[*alone_at_[f]].sent[f] > 0)) continue;
+    if (rig_->fixtures[f].switched || !(level_alone(f) > 0)) continue;
     for (std::size_t m = 0; m < rig_->luxmeters.size(); ++m) {
-      const auto lit = above_dark(*alone_at_[f], m);
+      const auto lit = light_alone(f, m);
       if (!lit) continue;
       alone_.lux(static_cast<Index>(m), static_cast<Index>(f)) = lit->lux;
       alone_.standard_error_lx(static_cast<Index>(m), static_cast<Index>(f)) = lit->standard_error_lx;
@@ -104,12 +140,12 @@ void MeterRun::find_curves() {
   // Of full light, by the meter that knows it best.
   for (std::size_t f = 0; f < read.size(); ++f) {
     double least = 1;
-    for (std::size_t m = 0; alone_at_[f] && m < rig_->luxmeters.size(); ++m) {
+    for (std::size_t m = 0; m < rig_->luxmeters.size(); ++m) {
       const double lux = alone_.lux(static_cast<Index>(m), static_cast<Index>(f));
       const double error_lx = alone_.standard_error_lx(static_cast<Index>(m), static_cast<Index>(f));
       if (!(lux > 0) || error_lx / lux > least) continue;
       least = error_lx / lux;
-      read[f] = {{taken_[*alone_at_[f]].sent[f], {lux, error_lx}}};
+      read[f] = {{level_alone(f), {lux, error_lx}}};
     }
   }
   for (std::size_t light = first_of_curves_; light < plan_.size(); ++light) {
@@ -134,9 +170,9 @@ std::vector<LightReading> MeterRun::readings() const {
   LUXRIG_CHECK(taken_.size() == plan_.size(), "{} of {} lights are measured", taken_.size(), plan_.size());
   std::vector<LightReading> readings;
   for (std::size_t f = 0; f < rig_->fixtures.size(); ++f) {
-    if (!alone_at_[f] || !(taken_[*alone_at_[f]].sent[f] > 0)) continue;
+    if (!(level_alone(f) > 0)) continue;
     for (std::size_t m = 0; m < rig_->luxmeters.size(); ++m) {
-      const auto lit = above_dark(*alone_at_[f], m);
+      const auto lit = light_alone(f, m);
       if (!lit) continue;
       LightReading reading;
       reading.receiver = rig_->points.size() + m;
@@ -144,7 +180,7 @@ std::vector<LightReading> MeterRun::readings() const {
       reading.lux = lit->lux;
       reading.standard_error_lx = std::max(lit->standard_error_lx, 1e-6);
       reading.level.setZero(static_cast<Index>(rig_->fixtures.size()));
-      reading.level[static_cast<Index>(f)] = share_at_level(curves_[f].of_level, taken_[*alone_at_[f]].sent[f]);
+      reading.level[static_cast<Index>(f)] = share_at_level(curves_[f].of_level, level_alone(f));
       readings.push_back(std::move(reading));
     }
   }

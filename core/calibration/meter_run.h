@@ -23,8 +23,9 @@ class MeterRun {
   /// brightest: brightest_levels(). Lamps at 0 are not measured. stated_lux: RigLight::stated_lux().
   MeterRun(const Rig& rig, std::span<const double> brightest, Eigen::MatrixXd stated_lux);
 
-  /// Lights to set one after the other, each as the lamps that are lit. It grows once all of them are taken: then lamps are
-  /// dimmed, in groups that follow from what each gives alone. Whoever has taken all of a plan that has not grown is done.
+  /// Lights to set one after the other, each as the lamps that are lit. It grows once all of them are taken: by lamps that
+  /// a meter has missed, then by dimmed ones, in groups that follow from what each gives alone. Whoever has taken all of a
+  /// plan that has not grown is done.
   [[nodiscard]] const std::vector<std::vector<LampStep>>& plan() const { return plan_; }
   /// What the meters showed under the next of them. sent: levels of all fixtures. readings: per luxmeter; none = not steady,
   /// or gone.
@@ -42,8 +43,13 @@ class MeterRun {
   };
   /// Adds a light, and darkness before it if the last is long ago.
   void add(std::vector<LampStep> lit);
+  /// A meter that was disturbed, or late, is asked once more.
+  void plan_again();
   void plan_curves();
   void find_curves();
+  /// At its brightest, by the last light that this meter has read; none = not read.
+  [[nodiscard]] std::optional<SteadyReading> light_alone(std::size_t fixture, std::size_t luxmeter) const;
+  [[nodiscard]] double level_alone(std::size_t fixture) const;  ///< as sent; 0 = not lit
   /// Of this light without the dark, by the last dark before it; none = not read.
   [[nodiscard]] std::optional<SteadyReading> above_dark(std::size_t light, std::size_t luxmeter) const;
 
@@ -51,8 +57,9 @@ class MeterRun {
   std::vector<double> brightest_;
   Eigen::MatrixXd stated_lux_;
   std::vector<std::vector<LampStep>> plan_;
-  std::vector<std::optional<std::size_t>> alone_at_;  ///< per fixture: of plan_
-  std::size_t first_of_curves_ = 0;                   ///< of plan_; 0 = not planned yet
+  std::vector<std::vector<std::size_t>> alone_at_;  ///< per fixture: of plan_
+  enum class Stage { alone, again, dimmed } stage_ = Stage::alone;
+  std::size_t first_of_curves_ = 0;  ///< of plan_
   LightAlone alone_;
   std::vector<Taken> taken_;
   std::vector<LampCurve> curves_;

@@ -164,6 +164,29 @@ TEST(MeterRun, NoLightExceedsALimitAndTheDarkIsNeverLongAgo) {
   }
 }
 
+TEST(MeterRun, ALightThatAMeterMissedIsSetOnceMore) {
+  std::mt19937_64 random(25);
+  const TrueRig rig = random_rig(random, 8, 4);
+  const std::vector<double> levels(8, 1.0);
+  MeterRun run(rig.rig, levels, rig.lux);
+  const std::size_t first = run.plan().size();
+  for (std::size_t light = 0; light < run.plan().size(); ++light) {
+    const std::vector<double> sent = levels_of(run.plan()[light], rig.rig);
+    auto readings = rig.read(sent, random);
+    // Somebody stands before a meter while the lamps are on that it sees.
+    if (light < first && (sent[1] > 0 || sent[5] > 0)) readings[1] = std::nullopt;
+    run.take(sent, readings);
+  }
+  EXPECT_EQ(run.readings().size(), 8u * 4u);
+  EXPECT_FALSE(run.curves()[1].of_level.empty());
+  EXPECT_EQ(run.plan()[first].size(), 0u) << "the dark";
+  for (const std::size_t k : {1, 2}) {
+    ASSERT_EQ(run.plan()[first + k].size(), 1u);
+    EXPECT_EQ(run.plan()[first + k][0].fixture, k == 1 ? 1u : 5u);
+    EXPECT_EQ(run.plan()[first + k][0].level, 1);
+  }
+}
+
 TEST(MeterRun, SaysNothingOfALampThatIsDeadNorOfMetersThatAreGone) {
   std::mt19937_64 random(24);
   TrueRig rig = random_rig(random, 9, 4);
