@@ -18,6 +18,8 @@ using Eigen::Index;
 constexpr std::size_t kLightsPerDark = 8;
 /// A level at which the best luxmeter would show less says nothing of a dimmer.
 constexpr double kSeen_lx = 0.2;
+/// A meter that shows so much less of a lamp than another would hardly tell more.
+constexpr double kMatters = 0.3;
 /// Light at half level is at most this share of that at the full one, whatever the dimmer.
 constexpr double kMostAtHalf = 0.6;
 
@@ -90,8 +92,11 @@ void MeterRun::plan_again() {
     const auto reads = [&](const Taken& taken) { return taken.readings[m].has_value(); };
     // One that reads seldom will not read then.
     if (2 * static_cast<std::size_t>(std::count_if(taken_.begin(), taken_.end(), reads)) < taken_.size()) continue;
-    for (std::size_t f = 0; f < rig_->fixtures.size(); ++f)
-      if (level_alone(f) > 0 && !light_alone(f, m)) lamps.push_back(f);
+    for (std::size_t f = 0; f < rig_->fixtures.size(); ++f) {
+      const auto of_meters = stated_lux_.col(static_cast<Index>(f)).tail(static_cast<Index>(rig_->luxmeters.size()));
+      const bool matters = of_meters[static_cast<Index>(m)] >= kMatters * of_meters.maxCoeff();
+      if (matters && level_alone(f) > 0 && !light_alone(f, m)) lamps.push_back(f);
+    }
   }
   std::sort(lamps.begin(), lamps.end());
   lamps.erase(std::unique(lamps.begin(), lamps.end()), lamps.end());

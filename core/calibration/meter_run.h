@@ -43,7 +43,7 @@ class MeterRun {
   };
   /// Adds a light, and darkness before it if the last is long ago.
   void add(std::vector<LampStep> lit);
-  /// A meter that was disturbed, or late, is asked once more.
+  /// A meter that was disturbed, or late, is asked once more if it should see a lamp as well as any.
   void plan_again();
   void plan_curves();
   void find_curves();

@@ -165,7 +165,7 @@ Result<void> by_hanging_meters(Measuring& measuring) {
   const Rig& rig = measuring.session.rig;
   MeterRun run(rig, measuring.levels.brightest, measuring.light.stated_lux());
   for (std::size_t taken = 0; taken < run.plan().size();) {
-    const char* what = taken == 0 ? "measuring each lamp alone" : "measuring dimmers";
+    const char* what = taken == 0 ? "measuring each lamp alone" : "measuring dimmed lamps";
     std::vector<std::vector<double>> lights;
     for (const auto& lit : std::span(run.plan()).subspan(taken)) lights.push_back(levels_of(lit, rig));
     const auto read =
