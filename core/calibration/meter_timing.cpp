@@ -10,8 +10,8 @@ namespace luxrig {
 namespace {
 
 constexpr double kSmallestError_lx = 0.02;
-/// Samples that wander by more than this, as a share and in standard errors, are not steady.
-constexpr double kWanders = 0.02, kWandersErrors = 4;
+/// Samples that go up or down by more than this, as a share and in standard errors of that drift, are not steady.
+constexpr double kWanders = 0.02, kWandersErrors = 3;
 /// A change is clear if it is so many times the scatter; the light has arrived within this share of it.
 constexpr double kClear = 10, kBegun = 0.03, kArrivedWithin = 0.01;
 /// A meter has settled when this share of the change is left.
@@ -35,6 +35,8 @@ SampleScatter scatter_of_samples(std::span<const TimedLux> samples) {
 /// Mean, variance of a sample, and by how much they go up or down from the first to the last.
 struct Samples {
   double mean = 0, variance = 0, drift = 0;
+  double about_drift = 0;  ///< sum of squares about the line through them
+  double drift_error = 0;  ///< of that drift, in deviations of a sample
 };
 
 Samples of(std::span<const double> lux) {
@@ -49,6 +51,8 @@ Samples of(std::span<const double> lux) {
     times += time * time;
   }
   samples.drift = slope / times * (count - 1);
+  samples.drift_error = (count - 1) / std::sqrt(times);
+  samples.about_drift = std::max(0.0, (count - 1) * samples.variance - slope * slope / times);
   return samples;
 }
 
@@ -158,7 +162,10 @@ std::vector<std::vector<std::optional<SteadyReading>>> ReadingLog::readings() co
                               (count - 1 + freedom);
       const double error_lx = std::hypot(std::sqrt(variance / count), kSmallestError_lx);
       const double drift_lx = std::abs(samples.drift);
-      if (drift_lx > kWanders * std::abs(samples.mean) && drift_lx > kWandersErrors * error_lx) continue;
+      const double noise_lx = std::sqrt((samples.about_drift + freedom * noise_squared * samples.mean * samples.mean) /
+                                        (count - 2 + freedom));
+      const double of_noise_lx = samples.drift_error * std::hypot(noise_lx, kSmallestError_lx);
+      if (drift_lx > kWanders * std::abs(samples.mean) && drift_lx > kWandersErrors * of_noise_lx) continue;
       readings[k][m] = SteadyReading{samples.mean, error_lx};
     }
   }

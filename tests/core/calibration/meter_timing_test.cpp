@@ -106,6 +106,21 @@ TEST(ReadingLog, ReadsEachLightThoughALateMeterShowsItAfterItIsGone) {
   EXPECT_LT(chi_squared / count, 2);
 }
 
+// Of three samples the last is often far from the first by chance.
+TEST(ReadingLog, NoiseIsNotTakenForLightThatWanders) {
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal;
+  constexpr int kLights = 2000;
+  ReadingLog log({MeterTiming{0, 0.05, 0.1}});
+  for (int light = 0; light < kLights; ++light) {
+    log.light(light, light + 0.4);
+    for (int k = 0; k < 3; ++k) log.sample(0, {light + 0.1 + 0.1 * k, 100 * (1 + 0.02 * normal(random))});
+  }
+  int read = 0;
+  for (const auto& of_light : log.readings()) read += of_light[0].has_value();
+  EXPECT_GE(read, 0.98 * kLights);
+}
+
 TEST(ReadingLog, LightThatWandersIsNotRead) {
   ReadingLog log({MeterTiming{0, 0.1, 0.1}});
   log.light(0, 1);
