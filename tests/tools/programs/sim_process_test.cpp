@@ -286,7 +286,7 @@ TEST(SimProcess, ServesItsPageAndSaysWhereEverythingListens) {
   const json rig = sim.get("/rig");
   ASSERT_TRUE(rig.is_object());
   EXPECT_EQ(rig["rig"], "room");
-  EXPECT_EQ(rig["world"], "mild, seed 1");
+  EXPECT_EQ(rig["world"], "none, seed 1");
   EXPECT_EQ(rig["buses"][0]["protocol"], "sACN (E1.31)");
   EXPECT_EQ(rig["buses"][0]["port"], sim.port("dmx"));
   EXPECT_EQ(rig["buses"][0]["universes"], json::array({1}));

@@ -64,7 +64,11 @@ Result<void> SimulatedRun::wait_held(int port, const std::stop_token& stop) {
           no_run(Cause::system, fmt::format("the daemon of the simulated rig ended (exit code {}): {}", *code,
                                             tail_of(folder_.path() / "log"))));
     const nlohmann::json status = status_on(port);
-    if (text_of(status, "phase") == "holding") return {};
+    const std::string phase = text_of(status, "phase");
+    if (phase == "holding") return {};
+    if (phase == "safe")
+      return tl::unexpected(
+          no_run(Cause::system, "the simulated rig is in its safe look: " + text_of(status, "detail")));
     const auto now = std::chrono::steady_clock::now();
     if (!status.is_null() && !answered) answered = now;
     if (answered && now - *answered > kLongestCorrecting)
