@@ -19,6 +19,7 @@ constexpr double kShareKnown = 0.008, kTimesAlone = 1.5;
 /// Below, a meter's last digit is more than its noise.
 constexpr double kLastDigit_lx = 0.02, kAboveLastDigit_lx = 2;
 constexpr double kUsualNoise = 0.01;
+constexpr int kPasses = 3;
 
 /// Per luxmeter: standard error of a reading as a share of it, as its brighter readings have it.
 VectorXd noise_of_meters(const LightAlone& alone) {
@@ -126,29 +127,35 @@ std::vector<ShareOfAlone> shares_of(const LightAlone& alone, std::span<const std
   std::vector<Index> meters = meters_of(alone, lamps);
   std::erase_if(meters, [&](Index m) { return !above_dark[static_cast<std::size_t>(m)]; });
   const auto rows = static_cast<Index>(meters.size());
+  const auto error_alone_lx = [&](Index m, Index k) {
+    return alone.standard_error_lx(meters[static_cast<std::size_t>(m)],
+                                   static_cast<Index>(lamps[static_cast<std::size_t>(k)]));
+  };
   VectorXd lux(rows), error_lx(rows);
   for (Index m = 0; m < rows; ++m) {
     const SteadyReading& reading = *above_dark[static_cast<std::size_t>(meters[static_cast<std::size_t>(m)])];
     lux[m] = reading.lux;
     error_lx[m] = std::max(reading.standard_error_lx, 1e-6);
   }
-  const MatrixXd light = weighted(alone, lamps, meters, error_lx);
-  if (!errors_of_shares(light).allFinite()) return {};
-  // shares = from · lux
-  const MatrixXd from =
-      (light.transpose() * light).ldlt().solve(light.transpose()) * error_lx.cwiseInverse().asDiagonal();
-  const VectorXd share = from * lux;
+  // What each lamp gives alone has an error too, which counts by its share. All are bright until they are known.
+  VectorXd share = VectorXd::Ones(static_cast<Index>(lamps.size()));
+  MatrixXd from;  // shares = from · lux
+  for (int pass = 0; pass < kPasses; ++pass) {
+    VectorXd error = error_lx;
+    for (Index m = 0; m < rows; ++m)
+      for (Index k = 0; k < share.size(); ++k) error[m] = std::hypot(error[m], share[k] * error_alone_lx(m, k));
+    const MatrixXd light = weighted(alone, lamps, meters, error);
+    if (!errors_of_shares(light).allFinite()) return {};
+    from = (light.transpose() * light).ldlt().solve(light.transpose()) * error.cwiseInverse().asDiagonal();
+    share = from * lux;
+  }
   std::vector<ShareOfAlone> shares;
   for (Index k = 0; k < share.size(); ++k) {
     double variance = 0;
     for (Index m = 0; m < rows; ++m) {
       double error = error_lx[m];
-      // What another lamp gives alone has an error too, which counts by that lamp's share.
       for (Index other = 0; other < share.size(); ++other)
-        if (other != k)
-          error = std::hypot(error, share[other] * alone.standard_error_lx(
-                                                       meters[static_cast<std::size_t>(m)],
-                                                       static_cast<Index>(lamps[static_cast<std::size_t>(other)])));
+        if (other != k) error = std::hypot(error, share[other] * error_alone_lx(m, other));
       variance += from(k, m) * from(k, m) * error * error;
     }
     shares.push_back({share[k], std::sqrt(variance)});

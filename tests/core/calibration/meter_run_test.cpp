@@ -116,6 +116,38 @@ TEST(MeterRun, FindsDimmerCurvesFromLampsThatAreLitTogether) {
       << "of rigs with six luxmeters or more";
 }
 
+// Such as a sample of the next light that has slipped in: its error says so.
+TEST(MeterRun, AMeterThatWasDisturbedWhileALampWasAloneDoesNotBendItsCurve) {
+  std::mt19937_64 random(26);
+  std::size_t shares = 0, within_two = 0;
+  for (int k = 0; k < 1000; ++k) {
+    const TrueRig rig = random_rig(random, 12, 6);
+    const std::vector<double> levels(12, 1.0);
+    MeterRun run(rig.rig, levels, rig.lux);
+    std::size_t disturbed = 0;
+    while (run.plan()[disturbed].empty()) disturbed = random() % run.plan().size();
+    const std::size_t f = run.plan()[disturbed].front().fixture;
+    for (std::size_t light = 0; light < run.plan().size(); ++light) {
+      const std::vector<double> sent = levels_of(run.plan()[light], rig.rig);
+      auto readings = rig.read(sent, random);
+      if (light == disturbed) {
+        SteadyReading& wrong = *readings[random() % 6];
+        const double off_lx = 0.5 * wrong.lux + 3;
+        wrong = {wrong.lux + off_lx, off_lx};
+      }
+      run.take(sent, readings);
+    }
+    for (const auto& [level, share] : run.curves()[f].of_level) {
+      if (level == 1) continue;
+      ++shares;
+      within_two += std::abs(share / std::pow(level, rig.exponent[f]) - 1) <= 2 * run.curves()[f].error;
+    }
+  }
+  RecordProperty("within_two_errors", std::to_string(static_cast<double>(within_two) / static_cast<double>(shares)));
+  EXPECT_GT(shares, 2000u);
+  EXPECT_GE(static_cast<double>(within_two), 0.93 * static_cast<double>(shares));
+}
+
 TEST(MeterRun, IsExactWithoutNoise) {
   std::mt19937_64 random(22);
   for (int k = 0; k < 50; ++k) {

@@ -129,19 +129,13 @@ Result<void> DaemonRig::post(const char* route, const json& body) const {
 }
 
 Result<void> DaemonRig::hold(std::span<const double> level) const {
-  // None goes dark on its way from one light to another.
-  std::vector<std::string> dark;
-  for (std::size_t f = 0; f < level.size(); ++f)
-    if (!(level[f] > 0)) dark.push_back(rig_->fixtures[f].name);
-  if (!dark.empty())
-    if (auto put_out = post("/api/level", {{"fixtures", dark}, {"level", 0}, {"for_s", kHeld_s}, {"fade_s", fade_s_}});
-        !put_out)
-      return put_out;
-  for (std::size_t f = 0; f < level.size(); ++f) {
-    if (!(level[f] > 0)) continue;
-    const json one = {
-        {"fixtures", {rig_->fixtures[f].name}}, {"level", level[f]}, {"for_s", kHeld_s}, {"fade_s", fade_s_}};
-    if (auto lit = post("/api/level", one); !lit) return lit;
+  // Those that go dark first, so that no limit is in the way of the others. All of one level at once: each request waits for
+  // the daemon's next tick.
+  std::map<double, std::vector<std::string>> at_level;
+  for (std::size_t f = 0; f < level.size(); ++f) at_level[std::max(0.0, level[f])].push_back(rig_->fixtures[f].name);
+  for (const auto& [share, names] : at_level) {
+    const json held = {{"fixtures", names}, {"level", share}, {"for_s", kHeld_s}, {"fade_s", fade_s_}};
+    if (auto done = post("/api/level", held); !done) return done;
   }
   return {};
 }
@@ -185,6 +179,7 @@ Result<std::vector<double>> DaemonRig::light(std::span<const double> level, cons
   for (std::size_t f = 0; f < level.size(); ++f)
     held_.push_back(share_at_level(dimmed_as_[f].measured_curve, level[f]));
   if (auto held = hold(held_); !held) return tl::unexpected(held.error());
+  held_at_s_ = now_s();
   const auto begun = Clock::now();
   auto still_since = begun;
   std::vector<double> sent, before;
@@ -233,6 +228,8 @@ Result<DaemonRig::Timings> DaemonRig::learn_timing(std::span<const double> toget
     const auto first = std::find_if(samples.begin(), samples.end(),
                                     [&](const TimedLux& s) { return s.at_s > dark_s + kDark_s - kSteadyDark_s; });
     timing.push_back(timing_of({first, samples.end()}, begun_s, arrived_s));
+    // The last lamp that went on may be the one that this meter sees.
+    if (timing.back()) timing.back()->delay_s = std::max(0.0, timing.back()->delay_s - (held_at_s_ - begun_s));
   }
   return timing;
 }
