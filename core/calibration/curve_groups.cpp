@@ -18,7 +18,9 @@ using Eigen::VectorXd;
 constexpr double kShareKnown = 0.008, kTimesAlone = 1.5;
 /// Below, a meter's last digit is more than its noise.
 constexpr double kLastDigit_lx = 0.02, kAboveLastDigit_lx = 2;
+/// Of a meter that no lamp alone lights well.
 constexpr double kUsualNoise = 0.01;
+/// Weights follow from shares, and shares from weights; three times is enough for either.
 constexpr int kPasses = 3;
 
 /// Per luxmeter: standard error of a reading as a share of it, as its brighter readings have it.

@@ -20,7 +20,7 @@ constexpr std::size_t kLightsPerDark = 8;
 constexpr double kSeen_lx = 0.2;
 /// A meter that shows so much less of a lamp than another would hardly tell more.
 constexpr double kMatters = 0.3;
-/// Light at half level is at most this share of that at the full one, whatever the dimmer.
+/// Light at half level is at most this share of that at the full one, for dimmers down to an exponent of 0.75.
 constexpr double kMostAtHalf = 0.6;
 
 }  // namespace

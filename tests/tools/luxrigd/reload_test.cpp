@@ -4,12 +4,12 @@
 #include <fstream>
 #include <thread>
 
+#include "core/estimation/calibration.h"
 #include "core/tasks/rig_version.h"
 #include "core/tasks/session.h"
 #include "tests/tools/programs/process.h"
 #include "tools/luxrig/open_session.h"
 #include "tools/luxrigd/by_hand_names.h"
-#include "core/estimation/calibration.h"
 #include "tools/luxrigd/reload_check.h"
 #include "tools/luxrigd/rig_file_watch.h"
 
@@ -101,6 +101,15 @@ TEST_F(RoomThatChanges, OnlyOutputChangesNeedARestart) {
     EXPECT_NE(text.find("needs a restart"), std::string::npos) << text;
     EXPECT_NE(text.find("rig.toml:"), std::string::npos) << text;
   }
+}
+
+TEST_F(RoomThatChanges, ACalibrationOfASimulatedRigNeedsARestartWhichThenRefusesIt) {
+  std::ofstream(calibration_file(before_->rig))
+      << R"({"luxrig_calibration": 1, "rig": "room", "made": "today", "simulated": "real, seed 3"})";
+  const auto problems = needs_a_restart(before_->rig, open()->rig, true);
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_NE(problems[0].text().find("which rig calibration.json was measured on"), std::string::npos)
+      << problems[0].text();
 }
 
 TEST_F(RoomThatChanges, AFileIsReportedOnlyWhileItsContentDiffers) {
