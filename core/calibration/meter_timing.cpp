@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "core/check.h"
@@ -16,6 +17,8 @@ constexpr double kWanders = 0.02, kWandersErrors = 3;
 constexpr double kClear = 10, kBegun = 0.03, kArrivedWithin = 0.01;
 /// A meter has settled when this share of the change is left.
 constexpr double kUnsettled = 0.005;
+/// A lag of first order describes the meter if what it leaves is at most so many times its noise.
+constexpr double kFits = 1.5;
 constexpr std::size_t kFewest = 4;  ///< samples at the end, and in the dark
 
 struct SampleScatter {
@@ -78,6 +81,41 @@ double relative_noise_squared(std::span<const std::vector<double>> lights) {
   return *middle;
 }
 
+/// A meter with a lag of first order, after a step: it begins at `from_s`, and this much later 1/e of the step is left.
+struct FirstOrderLag {
+  double from_s = 0, constant_s = 0, rms_lx = 0;
+};
+
+/// By least squares, over ever finer grids about the best of the last.
+FirstOrderLag lag_of(std::span<const TimedLux> samples, double dark_lx, double lit_lx, double begun_s) {
+  constexpr int kSteps = 20, kGrids = 6;
+  constexpr double kLongest_s = 1.5, kFiner = 2.5;
+  const auto rms_lx = [&](double from_s, double constant_s) {
+    double sum = 0;
+    for (const TimedLux& sample : samples) {
+      const double left = sample.at_s > from_s ? std::exp(-(sample.at_s - from_s) / constant_s) : 1;
+      const double off = sample.lux - lit_lx - (dark_lx - lit_lx) * left;
+      sum += off * off;
+    }
+    return std::sqrt(sum / static_cast<double>(samples.size()));
+  };
+  double from_width_s = samples.back().at_s - begun_s, constant_width_s = kLongest_s;
+  FirstOrderLag best{begun_s + from_width_s / 2, constant_width_s / 2, std::numeric_limits<double>::infinity()};
+  for (int grid = 0; grid < kGrids; ++grid) {
+    const FirstOrderLag middle = best;
+    for (int i = 0; i <= kSteps; ++i)
+      for (int j = 0; j <= kSteps; ++j) {
+        const double from_s = std::max(begun_s, middle.from_s + from_width_s * (static_cast<double>(i) / kSteps - 0.5));
+        const double constant_s =
+            std::max(1e-3, middle.constant_s + constant_width_s * (static_cast<double>(j) / kSteps - 0.5));
+        if (const double rms = rms_lx(from_s, constant_s); rms < best.rms_lx) best = {from_s, constant_s, rms};
+      }
+    from_width_s /= kFiner;
+    constant_width_s /= kFiner;
+  }
+  return best;
+}
+
 }  // namespace
 
 std::optional<MeterTiming> timing_of(std::span<const TimedLux> samples, double begun_s, double arrived_s) {
@@ -105,7 +143,15 @@ std::optional<MeterTiming> timing_of(std::span<const TimedLux> samples, double b
       (samples.back().at_s - samples[dark_count].at_s) / static_cast<double>(samples.size() - 1 - dark_count);
   // It began somewhere between two samples.
   timing.delay_s = std::max(0.0, samples[begins - 1].at_s - begun_s);
-  // What noise hides of a lag of first order goes on in the same way.
+  // All samples together tell a lag of first order far better than the one that noise lets be the last on the way.
+  const FirstOrderLag lag = lag_of(samples.subspan(dark_count), dark.mean, lit.mean, begun_s);
+  if (lag.rms_lx < kFits * std::max(lit.deviation, kArrivedWithin * change)) {
+    // How fast a meter is that needs less than a period is not known.
+    const double settled_s = lag.from_s - lag.constant_s * std::log(kUnsettled) + timing.period_s / 2 - arrived_s;
+    timing.settled_s = std::max({0.0, timing.delay_s, settled_s});
+    return timing;
+  }
+  // Another way of settling: what noise hides of it is taken to go on as a lag of first order does.
   const double seen_s = samples[arrives].at_s - arrived_s - timing.delay_s;
   const double longer = std::max(1.0, std::log(kUnsettled) / std::log(std::min(0.5, within / change)));
   timing.settled_s = std::max(0.0, timing.delay_s + longer * std::max(0.0, seen_s));

@@ -39,7 +39,7 @@ struct Alarm {
 struct PointStatus {
   std::optional<double> goal_lx;      ///< of the look in force
   double predicted_lx = 0;            ///< model with present gain estimates, at the present levels
-  double standard_error_lx = 0;       ///< of predicted_lx: transport and gain uncertainty
+  double standard_error_lx = 0;       ///< of predicted_lx: transport, gains, the meters that taught them
   std::optional<double> measured_lx;  ///< by the meter at this point
   Time measured_at{};
   LuxEstimate light;                  ///< best estimate: by the meter, else by the model

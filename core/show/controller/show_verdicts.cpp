@@ -115,7 +115,10 @@ PointStatus ShowController::State::point_status(std::size_t p, std::span<const d
   status.goal_lx = points_in_force[p].goal_lx;
   const Prediction prediction = predicted.at_point(estimator, p, level);
   status.predicted_lx = prediction.lux;
-  status.standard_error_lx = prediction.standard_error_lx;
+  // What a meter teaches is off by what the meter is off by.
+  const double tolerance =
+      estimator.confirmed(p) ? rig.luxmeters[*meter_at(p)].tolerance : estimator.common_tolerance();
+  status.standard_error_lx = std::hypot(prediction.standard_error_lx, tolerance * prediction.lux / std::sqrt(3.0));
   if (const auto meter = meter_at(p); meter && !health.meter_lost(*meter)) {
     const bool settled = !program.blackout && program.done(now);
     const std::optional<LuxReading>& measured = readings.measured()[*meter];

@@ -103,6 +103,20 @@ TEST(ShowController, GoesFromFadeToHoldingAndMeetsTheGoals) {
   EXPECT_EQ(status.detail, "all 2 goals met");
 }
 
+// The truth may be off by all that the luxmeter is off by, however often it is read.
+TEST(ShowController, APredictionIsNoBetterThanTheMeterThatTaughtIt) {
+  for (const double tolerance : {0.0, 0.05}) {
+    SmallShow small;
+    for (Luxmeter& meter : small.rig.luxmeters) meter.tolerance = tolerance;
+    small.start().apply(small.now(), std::vector<double>{0.36, 0.36});
+    small.run(20);
+    for (const PointStatus& point : small.status().points) {
+      EXPECT_LT(point.standard_error_lx, (0.01 + tolerance) * point.predicted_lx);
+      EXPECT_GE(point.standard_error_lx, tolerance / std::sqrt(3.0) * point.predicted_lx);
+    }
+  }
+}
+
 TEST(ShowController, ReducesAPlanUntilAMeterConfirmsItsLimit) {
   SmallShow small;
   small.start().apply(small.now(), std::vector<double>{0.49, 0.1});  // 50 lx in the model, exactly its limit
