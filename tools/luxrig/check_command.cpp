@@ -288,6 +288,7 @@ int run_check(const CheckArguments& arguments) {
     return report(session.error());
   }
   const Rig& rig = session->rig;
+  tell_calibration(rig);
   const Scene& scene = session->scene;
   const std::vector<Problem> notes = all_notes(*session);
   if (arguments.json) {

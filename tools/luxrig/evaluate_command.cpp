@@ -48,6 +48,7 @@ int run_evaluate(const EvaluateArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
   const auto session = open_session(arguments.rig);
   if (!session) return report(session.error());
+  tell_calibration(session->rig);
   const auto wanted = look_to_evaluate(arguments, session->rig);
   if (!wanted) return report(wanted.error());
   const Rig& rig = wanted->rig;

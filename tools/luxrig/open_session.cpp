@@ -1,5 +1,8 @@
 #include "tools/luxrig/open_session.h"
 
+#include <fmt/format.h>
+
+#include <cstdio>
 #include <system_error>
 
 #include "core/estimation/calibration.h"
@@ -30,6 +33,14 @@ Checked<Rig> with_calibration(Rig rig) {
   const auto calibration = calibration_from_json(*text, file.string());
   if (!calibration) return tl::unexpected(calibration.error());
   return calibrated(std::move(rig), *calibration, file.string());
+}
+
+void tell_calibration(const Rig& rig) {
+  if (rig.calibrated.empty()) return;
+  fmt::print(stderr, "luxrig: as calibrated {} ({}){}\n", rig.calibrated, calibration_file(rig).string(),
+             rig.calibrated_on.empty()
+                 ? ""
+                 : fmt::format(": of a simulated rig ({}), not of the real one", rig.calibrated_on));
 }
 
 Checked<Session> open_session(const std::filesystem::path& rig_path) {

@@ -14,6 +14,9 @@ namespace luxrig {
 /// The same without a calibration: what the rig file says, to measure or to simulate.
 [[nodiscard]] Checked<Session> open_stated_session(const std::filesystem::path& rig_path);
 
+/// Says on stderr by which calibration a command computes, and whether it is of a simulated rig; nothing without one.
+void tell_calibration(const Rig& rig);
+
 /// A rig as its file has it, with the calibration beside it, if there is one.
 [[nodiscard]] Checked<Rig> with_calibration(Rig rig);
 

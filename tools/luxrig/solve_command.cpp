@@ -173,6 +173,7 @@ int run_solve(const SolveArguments& arguments) {
   const std::stop_token stop = stop_on_signals();
   const auto session = open_session(arguments.rig);
   if (!session) return report(session.error());
+  tell_calibration(session->rig);
   ComputeOptions compute = arguments.compute;
   compute.watch.stop = stop;
   TerminalWatch terminal;

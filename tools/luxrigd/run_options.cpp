@@ -9,13 +9,14 @@
 namespace luxrig {
 
 void add_sim_options(CLI::App& app, SimArguments& sim, const char* what) {
-  app.add_flag("--sim", sim.start, what);
-  app.add_option("--sim-seed", sim.seed, "seed of the simulated rig's deviations");
+  CLI::Option* starts = app.add_flag("--sim", sim.start, what);
+  app.add_option("--sim-seed", sim.seed, "seed of the simulated rig's deviations")->needs(starts);
   app.add_option(
          "--sim-deviations", sim.deviations,
          "how far the simulated rig is from the rig file: mild as when new, real as found in halls, bad as real "
          "with wrong connections")
-      ->check(CLI::IsMember({"mild", "real", "bad"}));
+      ->check(CLI::IsMember({"mild", "real", "bad"}))
+      ->needs(starts);
 }
 
 void add_run_options(CLI::App& app, RunArguments& arguments) {

@@ -92,6 +92,10 @@ TEST(CalibrateOverTheWire, TheNextRunLightsByWhatWasMeasuredAndAStopLeavesNothin
   const Ran other = run({program("luxrig"), "run", path, "--sim", "--port", "0", "--max-error", "0.1"});
   EXPECT_EQ(other.code, 2) << other.output;
   EXPECT_NE(other.output.find("this is another (mild, seed 1)"), std::string::npos) << other.output;
+  const Ran evaluated = run({program("luxrig"), "evaluate", path, "--max-error", "0.1"});
+  EXPECT_EQ(evaluated.code, 0) << evaluated.output;
+  EXPECT_NE(evaluated.output.find("of a simulated rig (mild, seed 3), not of the real one"), std::string::npos)
+      << evaluated.output;
 }
 
 TEST(CalibrateOverTheWire, OfASimulatedRigItBringsRigAndDaemonWithIt) {

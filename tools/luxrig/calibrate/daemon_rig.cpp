@@ -28,9 +28,9 @@ using Clock = std::chrono::steady_clock;
 /// If this program dies, the daemon's look comes back after this.
 constexpr double kHeld_s = 45;
 constexpr auto kPoll = 100ms;
-constexpr auto kLongestWait = 30s;
+constexpr double kLongestWait_s = 30;
 /// Less than was asked for, for so long, is all there will be.
-constexpr auto kLimitStands = 2s;
+constexpr double kLimitStands_s = 2;
 /// The light stands still if the levels are the same in two looks.
 constexpr double kSameLevel = 1e-3;
 /// How long all is dark before the luxmeters' delay is measured, and lit after it. The slowest of the field answer 2 s late.
@@ -180,8 +180,8 @@ Result<std::vector<double>> DaemonRig::light(std::span<const double> level, cons
     held_.push_back(share_at_level(dimmed_as_[f].measured_curve, level[f]));
   if (auto held = hold(held_); !held) return tl::unexpected(held.error());
   held_at_s_ = now_s();
-  const auto begun = Clock::now();
-  auto still_since = begun;
+  const double begun_s = now_s();
+  arrived_at_s_ = begun_s;
   std::vector<double> sent, before;
   for (;;) {
     if (stop.stop_requested()) return tl::unexpected(stopped());
@@ -202,13 +202,13 @@ Result<std::vector<double>> DaemonRig::light(std::span<const double> level, cons
     }
     if (sent.size() != level.size())
       return tl::unexpected(fault(Cause::invalid, "the daemon's rig has other fixtures than the file"));
-    if (!arrived || sent != before) still_since = Clock::now();
-    if (arrived && sent == before && (as_asked || Clock::now() - still_since >= kLimitStands)) {
+    if (!arrived || sent != before) arrived_at_s_ = now_s();
+    if (arrived && sent == before && (as_asked || now_s() - arrived_at_s_ >= kLimitStands_s)) {
       for (std::size_t f = 0; f < sent.size(); ++f) sent[f] = level_of_share(dimmed_as_[f].measured_curve, sent[f]);
       return sent;
     }
     before = sent;
-    if (Clock::now() - begun > kLongestWait)
+    if (now_s() - begun_s > kLongestWait_s)
       return tl::unexpected(fault(Cause::system, "the light does not come to rest; luxrig status says why"));
   }
 }
@@ -220,14 +220,13 @@ Result<DaemonRig::Timings> DaemonRig::learn_timing(std::span<const double> toget
   if (auto watched = watch(kDark_s, stop); !watched) return tl::unexpected(watched.error());
   const double begun_s = now_s();
   if (auto sent = light(together, stop); !sent) return tl::unexpected(sent.error());
-  const double arrived_s = now_s();
   if (auto watched = watch(kLit_s, stop); !watched) return tl::unexpected(watched.error());
   Timings timing;
   for (const auto& samples : samples_) {
     // What was read before the last second of darkness may be the light before.
     const auto first = std::find_if(samples.begin(), samples.end(),
                                     [&](const TimedLux& s) { return s.at_s > dark_s + kDark_s - kSteadyDark_s; });
-    timing.push_back(timing_of({first, samples.end()}, begun_s, arrived_s));
+    timing.push_back(timing_of({first, samples.end()}, begun_s, arrived_at_s_));
     // The last lamp that went on may be the one that this meter sees.
     if (timing.back()) timing.back()->delay_s = std::max(0.0, timing.back()->delay_s - (held_at_s_ - begun_s));
   }
@@ -252,9 +251,9 @@ Result<std::vector<DaemonRig::Read>> DaemonRig::measure(std::span<const std::vec
     if (tell) tell(read.size());
     auto sent = light(level, stop);
     if (!sent) return tl::unexpected(sent.error());
-    const double arrived_s = now_s();
-    if (const auto watched = watch(dwell, stop); !watched) return tl::unexpected(watched.error());
-    log.light(arrived_s, now_s());
+    if (const auto watched = watch(arrived_at_s_ + dwell - now_s(), stop); !watched)
+      return tl::unexpected(watched.error());
+    log.light(arrived_at_s_, now_s());
     read.push_back({std::move(*sent), {}});
   }
   if (const auto watched = watch(log.whole_at_s() - now_s(), stop); !watched) return tl::unexpected(watched.error());

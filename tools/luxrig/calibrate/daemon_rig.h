@@ -82,7 +82,8 @@ class DaemonRig {
   std::vector<Fixture> dimmed_as_{};                      ///< by the calibration in use
   nlohmann::json held_before_ = nlohmann::json::array();  ///< "overrides" of the status
   std::vector<double> held_{};
-  double held_at_s_ = 0;  ///< when the daemon had taken all of them
+  double held_at_s_ = 0;     ///< when the daemon had taken all of them
+  double arrived_at_s_ = 0;  ///< when its light was first seen to be there
   double fade_s_ = kQuickFade_s;
   std::vector<std::vector<TimedLux>> samples_{};  ///< per luxmeter
   std::optional<Timings> timing_{};

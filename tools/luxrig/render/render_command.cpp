@@ -76,6 +76,7 @@ Checked<HungPlan> load_rig_for_picture(const RenderOptions& options) {
   auto rig = load_rig(options.rig);
   if (rig) rig = with_calibration(std::move(*rig));
   if (!rig) return tl::unexpected(rig.error());
+  tell_calibration(*rig);
   return look_to_render(options, *rig);
 }
 
