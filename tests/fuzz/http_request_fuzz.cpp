@@ -43,6 +43,21 @@ luxrig::HttpHandlers checking_handlers() {
   };
   handlers.goal = handlers.level;
   handlers.release = [](const std::vector<std::string>&) { return luxrig::Result<std::string>("released"); };
+  handlers.bypass = [](const std::vector<std::string>&, bool) { return luxrig::Result<std::string>("bypassed"); };
+  handlers.question = [](const luxrig::HandQuestion& question, double seconds) {
+    LUXRIG_CHECK(!question.id.empty() && question.text.size() <= 4 * 400, "a question of {}", question.text.size());
+    LUXRIG_CHECK(question.position_world_m.allFinite() && std::abs(question.normal_world.norm() - 1) < 1e-9,
+                 "it has no place");
+    LUXRIG_CHECK(question.level >= 0 && question.level <= 1 && question.step <= question.steps, "level {}",
+                 question.level);
+    LUXRIG_CHECK(seconds > 0 && seconds <= 600, "asked for {} s", seconds);
+    return std::optional<luxrig::HandAnswer>();
+  };
+  handlers.withdraw_question = [](const std::string&) {};
+  handlers.answer = [](const std::string&, const luxrig::HandAnswer& answer) {
+    LUXRIG_CHECK(answer.lux >= 0 && answer.lux <= luxrig::kMostLux, "{} lx", answer.lux);
+    return luxrig::Result<void>();
+  };
   handlers.reload = [] { return luxrig::Checked<std::string>("reloaded"); };
   return handlers;
 }

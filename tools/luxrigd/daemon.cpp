@@ -317,7 +317,7 @@ HttpHandlers Daemon::handlers() {
     }
     if (!last) return "{}";
     return status_json({last->session->rig, last->show, last->devices, last->output, options_.simulated, started_,
-                        last->at, options_.sim_control});
+                        last->at, options_.sim_control, questions_.present(now())});
   };
   handlers.universes = [this] { return universes_json(); };
   handlers.room_json = [this] {
@@ -344,6 +344,13 @@ HttpHandlers Daemon::handlers() {
   };
   handlers.release = [this](const std::vector<std::string>& names) { return release(names); };
   handlers.bypass = [this](const std::vector<std::string>& names, bool on) { return bypass(names, on); };
+  handlers.question = [this](const HandQuestion& question, double seconds) {
+    return questions_.ask(question, from_seconds(seconds), now());
+  };
+  handlers.withdraw_question = [this](const std::string& id) { questions_.withdraw(id); };
+  handlers.answer = [this](const std::string& id, const HandAnswer& answer) {
+    return questions_.answer(id, answer, now());
+  };
   handlers.reload = [this] { return reload(); };
   return handlers;
 }

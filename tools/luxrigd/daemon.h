@@ -20,6 +20,7 @@
 #include "tools/luxrigd/bus_thread.h"
 #include "tools/luxrigd/claims.h"
 #include "tools/luxrigd/guardian/guardian.h"
+#include "tools/luxrigd/hand_question.h"
 #include "tools/luxrigd/rig_file_watch.h"
 #include "tools/luxrigd/state/journal.h"
 #include "tools/luxrigd/state/light_store.h"
@@ -158,6 +159,7 @@ class Daemon {
   ProgramMailbox programs_;
   Claims folder_claim_, output_claims_;
   BlackoutSwitch blackout_;
+  QuestionBoard questions_;
   std::optional<LastLookMemory> guarded_;  ///< shared with the guardian
   std::counting_semaphore<> contact_pressed_{0};
   std::vector<std::optional<Time>> contact_unknown_since_, contact_pressed_since_;  ///< by bus

@@ -43,7 +43,7 @@ ShowStatus full_status() {
   return show;
 }
 
-std::string written(const ShowStatus& show) {
+std::string written(const ShowStatus& show, const std::optional<AskedQuestion>& question = {}) {
   std::vector<Health> devices;
   for (const Bus& bus : rig().buses) {
     Health health;
@@ -59,7 +59,9 @@ std::string written(const ShowStatus& show) {
                       .output = {},
                       .simulated = true,
                       .started = Time{} + std::chrono::seconds(10),
-                      .now = now});
+                      .now = now,
+                      .sim_control = {},
+                      .question = question});
 }
 
 TEST(StatusOfJson, IsWhatTheDaemonWrote) {
@@ -91,6 +93,26 @@ TEST(StatusOfJson, IsWhatTheDaemonWrote) {
   EXPECT_FALSE(read->show.by_hand[1].until.has_value());
   EXPECT_EQ(read->sent, std::vector<std::uint64_t>(rig().buses.size(), 1234));
   EXPECT_EQ(read->sends, (std::vector<bool>{true, false, true})) << "it is silent beside a desk";
+}
+
+TEST(StatusOfJson, HasTheQuestionOfAClientUntilItsTime) {
+  EXPECT_FALSE(json::parse(written(full_status())).contains("question"));
+  AskedQuestion asked;
+  asked.question.id = "a-1";
+  asked.question.text = "hold it here";
+  asked.question.position_world_m = {1, 2, 0.8};
+  asked.until = Time{} + std::chrono::seconds(75);
+  asked.answer = HandAnswer{HandAnswer::What::reading, 182.5};
+  const std::string text = written(full_status(), asked);
+  const json question = json::parse(text)["question"];
+  EXPECT_EQ(question["id"], "a-1");
+  EXPECT_EQ(question["text"], "hold it here");
+  EXPECT_EQ(question["position"], json::array({1, 2, 0.8}));
+  EXPECT_EQ(question["normal"], json::array({0, 0, 1}));
+  EXPECT_EQ(question["remaining_s"], 45);
+  EXPECT_EQ(question["answer"], (json{{"what", "reading"}, {"lux", 182.5}}));
+  EXPECT_FALSE(question.contains("fixture")) << "every lamp is dark";
+  EXPECT_TRUE(status_of_json(text, rig()));
 }
 
 /// What is said of the status with one place of it changed.

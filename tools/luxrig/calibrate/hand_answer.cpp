@@ -1,14 +1,12 @@
 #include "tools/luxrig/calibrate/hand_answer.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
-#include <string>
 
 namespace luxrig {
 namespace {
-
-/// Direct sun is half of it; more is a slip.
-constexpr double kMostLux = 200000;
 
 std::string_view trimmed(std::string_view text) {
   const auto first = text.find_first_not_of(" \t\r\n");
@@ -44,6 +42,22 @@ std::optional<HandAnswer> hand_answer(std::string_view line) {
   const auto lux = lux_of(text);
   if (!lux) return std::nullopt;
   return HandAnswer{HandAnswer::What::reading, *lux};
+}
+
+std::string words_of(const HandAnswer& answer) {
+  switch (answer.what) {
+    case HandAnswer::What::reading:
+      return fmt::format("{:.4g} lx", answer.lux);
+    case HandAnswer::What::skip:
+      return "skip this lamp";
+    case HandAnswer::What::other_place:
+      return "another place";
+    case HandAnswer::What::done:
+      return "end";
+    case HandAnswer::What::from_file:
+      break;
+  }
+  return "from the file";
 }
 
 std::optional<double> last_reading(std::string_view text) {

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "tools/http/json_body.h"
+#include "tools/luxrigd/api/question_json.h"
 
 namespace luxrig {
 namespace {
@@ -13,6 +14,7 @@ namespace {
 constexpr double kIdentifyFor_s = 5, kIdentifyAtMost_s = 60;
 constexpr double kLongestByHand_s = 366.0 * 86400;
 constexpr double kShortestFade_s = 0.1, kLongestFade_s = 600;
+constexpr double kLongestAsked_s = 600;
 constexpr std::size_t kMaxPlanBytes = 16u << 20;
 
 /// A non-empty list of strings; nullopt if it is anything else.
@@ -24,6 +26,12 @@ std::optional<std::vector<std::string>> names_in(const nlohmann::json& body, con
     names.push_back(one.get<std::string>());
   }
   return names;
+}
+
+std::optional<std::string> id_in(const nlohmann::json& body) {
+  if (!body.is_object() || !body.contains("id") || !body["id"].is_string()) return std::nullopt;
+  auto id = body["id"].get<std::string>();
+  return is_question_id(id) ? std::optional(std::move(id)) : std::nullopt;
 }
 
 HttpResponse dumped_answer(const nlohmann::json& answer) {
@@ -145,6 +153,32 @@ struct Routes {
     return done_answer(handlers.bypass(*names, body["on"].get<bool>()), "done");
   }
 
+  [[nodiscard]] HttpResponse question(const HttpRequest& request) const {
+    const auto body = json_body(request.body);
+    if (const auto id = id_in(body); id && body.contains("withdrawn") && body["withdrawn"] == true) {
+      handlers.withdraw_question(*id);
+      return dumped_answer({{"withdrawn", true}});
+    }
+    const auto question = question_from_json(body);
+    if (!question) return http_refusal(400, question.error().detail);
+    const double seconds = body.contains("for_s") && body["for_s"].is_number() ? body["for_s"].get<double>() : 0;
+    if (!(seconds > 0 && seconds <= kLongestAsked_s))
+      return http_refusal(400, fmt::format("\"for_s\" must be above 0 and at most {:g}", kLongestAsked_s));
+    nlohmann::json said = {{"asked", true}};
+    if (const auto answer = handlers.question(*question, seconds)) said["answer"] = to_json(*answer);
+    return dumped_answer(said);
+  }
+
+  [[nodiscard]] HttpResponse answer(const HttpRequest& request) const {
+    const auto body = json_body(request.body);
+    const auto id = id_in(body);
+    if (!id) return http_refusal(400, "send the \"id\" of the question that the status has");
+    const auto answer = answer_from_json(body);
+    if (!answer) return http_refusal(400, answer.error().detail);
+    if (const auto done = handlers.answer(*id, *answer); !done) return http_refusal(409, done.error().detail);
+    return dumped_answer({{"taken", true}});
+  }
+
   [[nodiscard]] HttpResponse room() const {
     std::string room = handlers.room_json();
     if (room.empty()) return http_refusal(503, "the room is being drawn: ask again in a second");
@@ -190,6 +224,8 @@ std::vector<HttpRoute> command_routes(HttpHandlers handlers) {
        [to](Request request) { return Routes::by_hand(request, "points", "goal_lux", to->handlers.goal); }},
       {post, "/api/release", [to](Request request) { return to->release(request); }},
       {post, "/api/bypass", [to](Request request) { return to->bypass(request); }},
+      {post, "/api/question", [to](Request request) { return to->question(request); }},
+      {post, "/api/answer", [to](Request request) { return to->answer(request); }, 1024},
       {post, "/api/reload", [to](Request) { return checked_answer(to->handlers.reload(), "reloaded"); }},
   };
 }

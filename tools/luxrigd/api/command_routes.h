@@ -10,6 +10,7 @@
 #include "core/rig/frames.h"
 #include "core/show/by_hand.h"
 #include "tools/http/server.h"
+#include "tools/luxrigd/hand_question.h"
 
 namespace luxrig {
 
@@ -37,6 +38,11 @@ struct HttpHandlers {
   std::function<Result<std::string>(const std::vector<std::string>& names)> release;
   /// Takes these fixtures and luxmeters out of the show, or back in. Returns the risks, in lines.
   std::function<Result<std::string>(const std::vector<std::string>& names, bool on)> bypass;
+  /// Asks a person in the room, for so long; the answer so far.
+  std::function<std::optional<HandAnswer>(const HandQuestion& question, double seconds)> question;
+  /// Asks no longer.
+  std::function<void(const std::string& id)> withdraw_question;
+  std::function<Result<void>(const std::string& id, const HandAnswer& answer)> answer;
   /// Reloads the rig file, whole or not at all.
   std::function<Checked<std::string>()> reload;
 };

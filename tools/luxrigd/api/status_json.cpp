@@ -6,6 +6,7 @@
 
 #include "tools/luxrig/addresses.h"
 #include "tools/luxrig/vector_json.h"
+#include "tools/luxrigd/api/question_json.h"
 
 namespace luxrig {
 
@@ -88,6 +89,13 @@ json point_json(const Point& point, const PointStatus& status, Time now) {
   return out;
 }
 
+json asked_json(const AskedQuestion& asked, Time now) {
+  json out = to_json(asked.question);
+  set(out, "remaining_s", std::max(0.0, to_seconds(asked.until - now)));
+  if (asked.answer) out["answer"] = to_json(*asked.answer);
+  return out;
+}
+
 /// Life of a meter: its own health line, else that of its bus.
 std::string meter_life(const Rig& rig, const Luxmeter& meter, const std::vector<Health>& devices) {
   std::string life = name_of(Life::configured);
@@ -127,6 +135,7 @@ std::string status_json(const StatusInput& input) {
               {"converged", show.converged}};
   if (input.sim_control) out["sim_control"] = {{"host", input.sim_control->host}, {"port", input.sim_control->port}};
   if (!rig.calibrated.empty()) out["calibrated"] = rig.calibrated;
+  if (input.question) out["question"] = asked_json(*input.question, input.now);
   put_counts(out, show, rig.control.goal_tolerance);
   json& fixtures = out["fixtures"] = json::array();
   for (std::size_t i = 0; i < show.fixtures.size(); ++i) fixtures.push_back(fixture_json(rig, i, show.fixtures[i]));

@@ -7,6 +7,8 @@
 
 #include "core/rig/rig.h"
 #include "core/show/show_controller.h"
+#include "drivers/registry.h"
+#include "tools/luxrigd/hand_question.h"
 
 namespace luxrig {
 
@@ -26,6 +28,7 @@ struct StatusInput {
   Time started{};
   Time now{};
   std::optional<Redirect> sim_control{};
+  std::optional<AskedQuestion> question{};
 };
 
 [[nodiscard]] std::string status_json(const StatusInput& input);

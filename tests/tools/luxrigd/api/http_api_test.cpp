@@ -91,6 +91,13 @@ class HttpApiTest : public ::testing::Test {
       held += fmt::format("{}{} ", on ? "bypass " : "undo ", fmt::join(names, "+"));
       return std::string("watched by nobody");
     };
+    handlers.question = [this](const HandQuestion& question, double seconds) {
+      return questions.ask(question, from_seconds(seconds), Time{});
+    };
+    handlers.withdraw_question = [this](const std::string& id) { questions.withdraw(id); };
+    handlers.answer = [this](const std::string& id, const HandAnswer& answer) {
+      return questions.answer(id, answer, Time{});
+    };
     handlers.reload = []() -> Checked<std::string> {
       return tl::unexpected(std::vector<Problem>{{"rig.toml", 7, 1, "[[bus]] \"dmx\" has changed", "restart"}});
     };
@@ -113,6 +120,7 @@ class HttpApiTest : public ::testing::Test {
   int port = 0;
   std::atomic<int> blackouts{0}, applied{0}, parked{0};
   std::string held;
+  QuestionBoard questions;
 };
 
 TEST_F(HttpApiTest, AnswersStatusAndBlackout) {
@@ -196,6 +204,46 @@ TEST_F(HttpApiTest, SetsByHandAndReleases) {
   EXPECT_EQ(held, "");
 }
 
+TEST_F(HttpApiTest, AQuestionIsAnsweredOnceByItsId) {
+  const auto asked = [](const std::string& id, const std::string& more) {
+    return R"({"id":")" + id +
+           R"(","text":"hold it here","position":[1,2,0.8],"normal":[0,0,1],"step":1,"steps":2,"readings":0)" + more +
+           "}";
+  };
+  const auto put = [&](const std::string& body) { return ask(port, post("/api/question", body, kJson)); };
+  const auto answer = [&](const std::string& body) { return ask(port, post("/api/answer", body, kJson)); };
+  const std::string reading = R"({"id":"a-1","what":"reading","lux":182.5})";
+  EXPECT_NE(answer(reading).find(" 409 Conflict"), std::string::npos) << "nothing is asked";
+  EXPECT_NE(put(asked("a-1", R"(,"for_s":45)")).find("{\"asked\":true}"), std::string::npos);
+  ASSERT_TRUE(questions.present(Time{}));
+  EXPECT_EQ(questions.present(Time{})->until, Time{} + std::chrono::seconds(45));
+  for (const char* body :
+       {"", "7", "[]", "{}", R"({"what":"skip"})", R"({"id":7,"what":"skip"})", R"({"id":"a 1","what":"skip"})",
+        R"({"id":"a-1"})", R"({"id":"a-1","what":"reading"})", R"({"id":"a-1","what":"reading","lux":-1})",
+        R"({"id":"a-1","what":"reading","lux":1e999})", R"({"id":"a-1","what":"reading","lux":200001})",
+        R"({"id":"a-1","what":"reading","lux":"182"})"})
+    EXPECT_NE(answer(body).find(" 400 "), std::string::npos) << body;
+  EXPECT_FALSE(questions.present(Time{})->answer);
+  EXPECT_NE(answer(R"({"id":"a-0","what":"skip"})").find(" 409 "), std::string::npos) << "another question";
+  EXPECT_NE(answer(reading).find(" 200 "), std::string::npos);
+  EXPECT_NE(answer(reading).find(" 200 "), std::string::npos) << "the same again";
+  EXPECT_NE(answer(R"({"id":"a-1","what":"skip"})").find(" 409 "), std::string::npos) << "it has been answered";
+  EXPECT_NE(put(asked("a-1", R"(,"for_s":45)")).find(R"("answer":{"lux":182.5,"what":"reading"})"), std::string::npos);
+  EXPECT_NE(put(asked("a-2", R"(,"for_s":45,"fixture":"spot","level":0.5)")).find(" 200 "), std::string::npos);
+  EXPECT_NE(answer(reading).find(" 409 "), std::string::npos) << "the question before";
+  for (const std::string& body :
+       {asked("a-3", ""), asked("a-3", R"(,"for_s":0)"), asked("a-3", R"(,"for_s":601)"),
+        asked("a-3", R"(,"for_s":"45")"), asked("a 3", R"(,"for_s":45)"),
+        asked("a-3", R"(,"for_s":45,"fixture":"spot")"), asked("a-3", R"(,"for_s":45,"known_to":-1)"),
+        std::string(R"({"id":"a-2"})"), std::string(R"({"id":"a-2","withdrawn":false})")})
+    EXPECT_NE(put(body).find(" 400 "), std::string::npos) << body;
+  EXPECT_EQ(questions.present(Time{})->question.id, "a-2");
+  EXPECT_NE(put(R"({"id":"a-1","withdrawn":true})").find(" 200 "), std::string::npos);
+  EXPECT_TRUE(questions.present(Time{})) << "only its own";
+  EXPECT_NE(put(R"({"id":"a-2","withdrawn":true})").find(" 200 "), std::string::npos);
+  EXPECT_FALSE(questions.present(Time{}));
+}
+
 TEST_F(HttpApiTest, ARefusedReloadNamesItsKeyAndAnApplyItsHeldFixtures) {
   const std::string refused = ask(port, post("/api/reload", "{}", kJson));
   EXPECT_NE(refused.find(" 400 "), std::string::npos);
@@ -222,7 +270,8 @@ TEST_F(HttpApiTest, ThePortRequiresTheTokenButTheSocketDoesNot) {
       EXPECT_NE(ask(port, get(route)).find(" 401 "), std::string::npos) << route;
     for (const char* route : {"/api/status", "/api/events"})
       EXPECT_EQ(ask(port, "HEAD" + get(route).substr(3)).find(" 200 "), std::string::npos) << route;
-    for (const char* route : {"/api/blackout", "/api/apply", "/api/level", "/api/session", "/api/reload"})
+    for (const char* route :
+         {"/api/blackout", "/api/apply", "/api/level", "/api/session", "/api/reload", "/api/question", "/api/answer"})
       EXPECT_NE(ask(port, post(route, "{\"on\":true}", kJson)).find(" 401 "), std::string::npos) << route;
   }
   EXPECT_EQ(blackouts, 0);
