@@ -317,6 +317,129 @@ TEST(CalibrateOverTheWire, ByHandItSaysWhereToHoldTheMeterAndHowWellItKnowsTheLi
   EXPECT_GE(found, 1) << asking.output();
 }
 
+/// A person who answers on the daemon's page: what its browser gets and sends.
+class PersonAtThePage {
+ public:
+  explicit PersonAtThePage(LiveRig& rig) : rig_(rig) {}
+
+  /// The question that is asked now; null if there is none, or it has its answer.
+  json question() {
+    const json status = rig_.status();
+    if (!status.is_object() || !status.contains("question") || status["question"].contains("answer")) return {};
+    return status["question"];
+  }
+  /// Status of the daemon's answer.
+  int answer(json body) {
+    const auto daemon = daemon_on(rig_.port());
+    const auto said = daemon ? http_post_json(*daemon, "/api/answer", body.dump()) : std::nullopt;
+    return said ? said->status : 0;
+  }
+  /// Answers what is asked, if something is, by the true light there.
+  void read_meter() {
+    const json asked = question();
+    if (!asked.is_object()) return;
+    const json truth = rig_.truth();
+    for (const json& point : truth["points"]) {
+      if (asked["text"].get<std::string>().find('"' + point["name"].get<std::string>() + '"') == std::string::npos)
+        continue;
+      EXPECT_EQ(answer({{"id", asked["id"]}, {"what", "reading"}, {"lux", point["lux"]}}), 200) << asked;
+      told_ += asked.contains("fixture") ? 1 : 0;
+    }
+  }
+  /// Readings under a lamp.
+  [[nodiscard]] int told() const { return told_; }
+
+ private:
+  LiveRig& rig_;
+  int told_ = 0;
+};
+
+TEST(CalibrateOverTheWire, ByHandThePageAsksTooAndTheFirstAnswerCounts) {
+  const Folder folder;
+  std::filesystem::copy(source("tests/rigs/room"), folder / "room", std::filesystem::copy_options::recursive);
+  const std::string path = (folder / "room").string();
+  LiveRig rig(path);
+  ASSERT_TRUE(rig.wait_phase("holding", 90s)) << rig.daemon().output();
+  const Person terminal(folder / "typed");
+  std::vector<std::string> words = {"/bin/sh", "-c", "exec \"$0\" \"$@\" < " + (folder / "typed").string()};
+  for (const std::string& word : calibrate(path, rig.port())) words.push_back(word);
+  words.emplace_back("--hand");
+  Process asking(words, folder / "asking.log");
+  PersonAtThePage page(rig);
+  json first;
+  ASSERT_TRUE(wait_for([&] { return (first = page.question()).is_object(); }, 120s)) << asking.output();
+  EXPECT_FALSE(first.contains("fixture")) << "the dark first";
+  EXPECT_EQ(first["readings"], 0);
+  EXPECT_GT(first["known_to"], 0);
+  EXPECT_EQ(first["position"].size(), 3U);
+
+  // An answer at the terminal ends the question on the page.
+  const json asked_first = {{"id", first["id"]}, {"what", "reading"}, {"lux", 1}};
+  terminal.type("s");
+  json second;
+  ASSERT_TRUE(wait_for(
+      [&] {
+        second = page.question();
+        return second.is_object() && second["id"] != first["id"];
+      },
+      60s))
+      << asking.output();
+  EXPECT_EQ(page.answer(asked_first), 409);
+  // "Another place" on the page: from there on all readings come from the page.
+  EXPECT_EQ(page.answer({{"id", second["id"]}, {"what", "other_place"}}), 200);
+  ASSERT_TRUE(wait_for(
+      [&] {
+        page.read_meter();
+        return asking.output().find("Now the light at") != std::string::npos;
+      },
+      180s))
+      << asking.output();
+  EXPECT_NE(asking.output().find("another place, from the page"), std::string::npos) << asking.output();
+  EXPECT_NE(asking.output().find(" lx, from the page"), std::string::npos) << asking.output();
+  EXPECT_GE(page.told(), 1);
+  ASSERT_TRUE(wait_for(
+      [&] {
+        const json asked = page.question();
+        if (asked.is_object()) return page.answer({{"id", asked["id"]}, {"what", "end"}}) == 200;
+        return asking.output().find("no further place") != std::string::npos;
+      },
+      60s))
+      << asking.output();
+  ASSERT_EQ(asking.wait(60s), 0) << asking.output();
+  EXPECT_FALSE(rig.status().contains("question")) << "it takes its question with it";
+  const json calibration = json::parse(text_of(folder / "room" / "calibration.json"), nullptr, false);
+  ASSERT_TRUE(calibration.is_object()) << asking.output();
+  const json truth = rig.truth();
+  int found = 0;
+  double chi_squared = 0;
+  for (const json& lamp : truth["fixtures"]) {
+    const json& output = calibration["fixtures"][lamp["name"].get<std::string>()]["output"];
+    if (!(output[1].get<double>() > 0)) continue;  // no reading told of it
+    chi_squared += squared((output[0].get<double>() - lamp["output"].get<double>()) / output[1].get<double>());
+    ++found;
+  }
+  EXPECT_GE(found, 1) << asking.output();
+  EXPECT_LT(chi_squared, 3 * squared(3.5)) << asking.output();
+}
+
+TEST(CalibrateOverTheWire, AQuestionOfAKilledClientIsGoneByItself) {
+  const Folder folder;
+  std::filesystem::copy(source("tests/rigs/room"), folder / "room", std::filesystem::copy_options::recursive);
+  const std::string path = (folder / "room").string();
+  LiveRig rig(path);
+  ASSERT_TRUE(rig.wait_phase("holding", 90s)) << rig.daemon().output();
+  const Person terminal(folder / "typed");
+  std::vector<std::string> words = {"/bin/sh", "-c", "exec \"$0\" \"$@\" < " + (folder / "typed").string()};
+  for (const std::string& word : calibrate(path, rig.port())) words.push_back(word);
+  words.emplace_back("--hand");
+  Process asking(words, folder / "asking.log");
+  PersonAtThePage page(rig);
+  ASSERT_TRUE(wait_for([&] { return page.question().is_object(); }, 120s)) << asking.output();
+  asking.signal(SIGKILL);
+  EXPECT_TRUE(rig.wait_status([](const json& s) { return !s.contains("question"); }, 60s));
+  EXPECT_TRUE(rig.wait_status([](const json& s) { return s["overrides"].empty(); }, 60s)) << "the look is back";
+}
+
 TEST(Calibrate, IsRefusedWithoutADaemonOrLuxmeters) {
   const Ran alone = run(calibrate(source("tests/rigs/room"), 1));
   EXPECT_EQ(alone.code, 1) << alone.output;

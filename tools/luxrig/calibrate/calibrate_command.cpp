@@ -92,6 +92,7 @@ struct Measuring {
   const CameraView* camera =
       nullptr;       ///< if one is used: its places are points of `light`, but none to hold a meter at
   bool any = false;  ///< something is measured
+  int by_hand = 0;   ///< readings
 
   [[nodiscard]] std::vector<std::size_t> no_points() const {
     return camera ? camera->points() : std::vector<std::size_t>{};
@@ -216,6 +217,36 @@ void put_heads(const Rig& rig, const std::vector<MeasuredHead>& heads, const std
   put_heads(rig, heads, before ? &*before : nullptr, found);
 }
 
+std::string place_words(const Point& point) {
+  return fmt::format("Hold the luxmeter at \"{}\": x {:.2f} m, y {:.2f} m, {:.2f} m high, {}.", point.name,
+                     point.position_world_m.x(), point.position_world_m.y(), point.position_world_m.z(),
+                     facing_words(point.normal_world));
+}
+
+/// For the page: what is asked at this step of the place.
+HandQuestion question_of(const Measuring& measuring, const HandPlace& place, std::size_t k) {
+  const Rig& rig = measuring.session.rig;
+  const Point& point = rig.points[place.point];
+  const LampStep& step = place.steps[k];
+  const GoalError known = measuring.light.error_of_goals(measuring.levels.use);
+  HandQuestion question;
+  question.text = place_words(point);
+  question.position_world_m = point.position_world_m;
+  question.normal_world = point.normal_world;
+  if (step.level > 0) {
+    question.fixture = rig.fixtures[step.fixture].name;
+    question.level = std::min(1.0, step.level);
+  }
+  question.step = static_cast<int>(k + 1);
+  question.steps = static_cast<int>(place.steps.size());
+  question.readings = measuring.by_hand;
+  if (known.goals > 0) {
+    question.known_to = known.rms;
+    question.known_to_worst = known.worst;
+  }
+  return question;
+}
+
 /// One place; false = the person is done.
 Result<bool> at_place(Measuring& measuring, HandPlace place, HandMeter& meter) {
   const Rig& rig = measuring.session.rig;
@@ -227,12 +258,14 @@ Result<bool> at_place(Measuring& measuring, HandPlace place, HandMeter& meter) {
     if (!sent) return tl::unexpected(during(step, rig, sent.error()));
     step.level = (*sent)[step.fixture];
     const auto answer = meter.ask(
-        fmt::format("{} of {}, {}", k + 1, place.steps.size(), words_of(step, rig)), DaemonRig::kHoldAgain,
-        [&] { return measuring.daemon.hold_again(); }, measuring.stop);
+        fmt::format("{} of {}, {}", k + 1, place.steps.size(), words_of(step, rig)), question_of(measuring, place, k),
+        DaemonRig::kHoldAgain, [&] { return measuring.daemon.hold_again(); }, measuring.stop);
     if (!answer) return tl::unexpected(answer.error());
     done = answer->what == HandAnswer::What::done;
     if (done || answer->what == HandAnswer::What::other_place) break;
-    if (answer->what == HandAnswer::What::reading) lux[k] = answer->lux;
+    if (answer->what != HandAnswer::What::reading) continue;
+    lux[k] = answer->lux;
+    ++measuring.by_hand;
   }
   // Without the dark, light of no lamp would count as theirs.
   const auto readings = lux.front() ? readings_at(rig, place, lux, measuring.curves) : std::vector<LightReading>{};
@@ -244,16 +277,17 @@ Result<bool> at_place(Measuring& measuring, HandPlace place, HandMeter& meter) {
   return !done;
 }
 
-Result<void> by_hand(Measuring& measuring, HandMeter meter) {
+Result<void> by_hand(Measuring& measuring, const std::optional<std::filesystem::path>& meter_file) {
   const Rig& rig = measuring.session.rig;
-  fmt::print("Type each reading in lux{}. s skips a lamp, n goes to another place, q ends.\n\n",
-             meter.has_file() ? ", or Enter alone to take it from the meter's file" : "");
+  PageQuestion page(measuring.daemon.daemon(), DaemonRig::kHeld_s);
+  HandMeter meter(meter_file, page);
+  fmt::print(
+      "Type each reading in lux{}. s skips a lamp, n goes to another place, q ends. The daemon's page asks, too: "
+      "luxrig page opens it.\n\n",
+      meter.has_file() ? ", or Enter alone to take it from the meter's file" : "");
   std::vector<std::size_t> been = measuring.no_points();
   while (const auto place = next_hand_place(rig, measuring.light, measuring.levels, measuring.curves, been)) {
-    const Point& point = rig.points[place->point];
-    fmt::print("Hold the luxmeter at \"{}\": x {:.2f} m, y {:.2f} m, {:.2f} m high, {}.\n", point.name,
-               point.position_world_m.x(), point.position_world_m.y(), point.position_world_m.z(),
-               facing_words(point.normal_world));
+    fmt::print("{}\n", place_words(rig.points[place->point]));
     const auto more = at_place(measuring, *place, meter);
     if (!more) return tl::unexpected(more.error());
     if (!*more) return {};
@@ -362,7 +396,7 @@ int run_calibrate(const CalibrateArguments& arguments) {
     heads = std::move(*measured);
   }
   if (arguments.hand)
-    if (auto measured = by_hand(measuring, HandMeter(arguments.meter_file)); !measured) return report(measured.error());
+    if (auto measured = by_hand(measuring, arguments.meter_file); !measured) return report(measured.error());
 
   if (!measuring.any) {
     fmt::print(stderr, "luxrig: nothing was measured, so nothing is written\n");
@@ -400,8 +434,9 @@ Action declare_calibrate(CLI::App& command) {
                   "start a simulated rig and a daemon for it, and measure that; else a running daemon's rig");
   add_compute(command, calibrate->compute);
   command.add_flag("--meters", calibrate->meters, "by the luxmeters that hang (default without --hand)");
-  command.add_flag("--hand", calibrate->hand,
-                   "by a luxmeter in your hand: it says where to hold it, you type readings");
+  command.add_flag(
+      "--hand", calibrate->hand,
+      "by a luxmeter in your hand: it says where to hold it, here and on the daemon's page; the first reading counts");
   command
       .add_option(
           "--camera", calibrate->camera,

@@ -25,8 +25,6 @@ using nlohmann::json;
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-/// If this program dies, the daemon's look comes back after this.
-constexpr double kHeld_s = 45;
 constexpr auto kPoll = 100ms;
 constexpr double kLongestWait_s = 30;
 /// Less than was asked for, for so long, is all there will be.

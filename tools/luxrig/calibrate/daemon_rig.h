@@ -36,6 +36,8 @@ class DaemonRig {
   [[nodiscard]] Result<std::vector<double>> light(std::span<const double> level, const std::stop_token& stop);
   /// Holds the same levels for longer. Call it every kHoldAgain while a person is waited for.
   [[nodiscard]] Result<void> hold_again() const { return hold(held_); }
+  /// If this program dies, the daemon's look comes back after this.
+  static constexpr double kHeld_s = 45;
   /// From one light to the next; else kQuickFade_s.
   void fade_in(double seconds) { fade_s_ = seconds; }
   static constexpr std::chrono::seconds kHoldAgain{15};
@@ -46,6 +48,7 @@ class DaemonRig {
   [[nodiscard]] Result<void> aim(std::size_t fixture, const Joints& sent, const Approach& from, double level) const;
   /// The daemon turns its heads by a calibration already.
   [[nodiscard]] bool turns_as_found(std::size_t fixture) const { return dimmed_as_[fixture].joint_map.has_value(); }
+  [[nodiscard]] const HttpPeer& daemon() const { return daemon_; }
   /// Where the daemon's simulated rig gives pictures; none = its rig is real.
   [[nodiscard]] const std::optional<HttpPeer>& sim_control() const { return sim_control_; }
 
