@@ -29,6 +29,7 @@ export class MockDaemon {
   name = 'gallery';
   blackout = false;
   overrides = [];
+  question = undefined; // of a client that measures by hand; a person's answer is put into it
   alarms = [];
   faulted = new Set(); // names of devices
   dark = {}; // by name of a fixture: further fields of its entry, such as parked and waits_for
@@ -138,8 +139,29 @@ export class MockDaemon {
       devices: [device('dmx', 44, false), device('dimmer', 44, true), device('meters', 4, true)],
       alarms,
       overrides: this.overrides,
+      ...(this.question ? { question: { ...this.question, remaining_s: 45 } } : {}),
       output: { rate_hz: 44, frames: Math.floor(t * 44), p50_us: 38, p99_us: 91, max_us: 212, realtime: true },
     };
+  }
+
+  /** A client puts a question, keeps it there, and takes it back. */
+  #ask(asked, json) {
+    if (asked.withdrawn) {
+      if (this.question?.id === asked.id) this.question = undefined;
+      return json(200, { withdrawn: true });
+    }
+    const { for_s: _, ...question } = asked;
+    const answer = this.question?.id === asked.id ? this.question.answer : undefined;
+    this.question = { ...question, ...(answer ? { answer } : {}) };
+    return json(200, { asked: true, ...(answer ? { answer } : {}) });
+  }
+
+  #answerQuestion({ id, ...answer }, json) {
+    if (this.question?.id !== id) return json(409, { error: 'this is not asked any more' });
+    const before = this.question.answer;
+    if (before && (before.what !== answer.what || before.lux !== answer.lux)) return json(409, { error: 'this has been answered already' });
+    this.question = { ...this.question, answer };
+    return json(200, { taken: true });
   }
 
   #byHand(route, asked, json) {
@@ -162,11 +184,13 @@ export class MockDaemon {
     if (request.method === 'POST') {
       let body = '';
       for await (const part of request) body += part;
-      if (!['/api/blackout', '/api/level', '/api/goal', '/api/release'].includes(url.pathname)) return json(404, {});
+      if (!['/api/blackout', '/api/level', '/api/goal', '/api/release', '/api/question', '/api/answer'].includes(url.pathname)) return json(404, {});
       if (request.headers['content-type'] !== 'application/json') return json(415, {});
       if (this.refuse) return json(503, {});
       this.posts.push({ path: url.pathname, body: JSON.parse(body) });
       const { body: asked } = this.posts.at(-1);
+      if (url.pathname === '/api/question') return this.#ask(asked, json);
+      if (url.pathname === '/api/answer') return this.#answerQuestion(asked, json);
       if (url.pathname !== '/api/blackout') return this.#byHand(url.pathname, asked, json);
       this.blackout = asked.on === true;
       return json(200, { on: this.blackout });

@@ -11,6 +11,7 @@ import { eventually, openPage, startBrowser } from './browser.mjs';
 import { unreadableTexts } from './contrast.mjs';
 import { MockDaemon } from './mock_server.mjs';
 import { allChecks, fitsItsWidth, showsTheRig } from './page_checks.mjs';
+import { questionChecks } from './question_checks.mjs';
 
 const option = (name) => {
   const at = process.argv.indexOf(name);
@@ -243,6 +244,7 @@ async function againstMock(browser, dist, out) {
       assert.deepEqual(view.misdeeds, []);
       await view.close();
     });
+  await questionChecks(browser, daemon, url, check, shot);
   await daemon.close();
 }
 

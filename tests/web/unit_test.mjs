@@ -13,7 +13,7 @@ async function load(name) {
     format: 'esm', write: false, logLevel: 'error' });
   return import(`data:text/javascript;base64,${Buffer.from(outputFiles[0].contents).toString('base64')}`);
 }
-const [format, judge, api, plan, works] = await Promise.all(['format', 'judge', 'api', 'plan_layout', 'works'].map(load));
+const [format, judge, api, plan, works, reading] = await Promise.all(['format', 'judge', 'api', 'plan_layout', 'works', 'reading'].map(load));
 
 test('lux has three digits and no false ones', () => {
   const cases = [[0, '0.00'], [0.424, '0.42'], [9.994, '9.99'], [9.996, '10.0'], [48.23, '48.2'], [99.96, '100'],
@@ -94,6 +94,33 @@ test('a head says why it is dark only when it is, and what it waits for only whe
   assert.equal(judge.whyDark(fixture({ parked: true, waits_for: 7 })), 'parked');
   assert.equal(judge.whyDark(fixture({ parked: true, kept_dark: true, waits_for: 'the next plan' })), 'parked, waits for the next plan');
   assert.equal(judge.whyDark(fixture({ kept_dark: true, waits_for: 'another aim' })), 'kept dark, waits for another aim');
+});
+
+test('a question is read whole, and what is none is no question', () => {
+  const asked = (question) => api.readStatus({ phase: 'holding', question }).question;
+  for (const none of [undefined, null, 7, [], {}, { id: 'a' }, { id: 7, text: 'x' }, { id: 'a', text: '' }]) assert.equal(asked(none), undefined);
+  assert.ok(!('question' in api.readStatus({ phase: 'holding' })));
+  const full = { id: 'a-1', text: 'hold it', position: [1, 2, 3], normal: [0, 0, 1], fixture: 'spot', level: 0.5, step: 1, steps: 2, readings: 0,
+    known_to: 0.1, known_to_worst: 0.2, answer: { what: 'reading', lux: 3 } };
+  assert.deepEqual(asked({ ...full, remaining_s: 4 }), full);
+  assert.deepEqual(asked({ id: 'a', text: 'x', position: [1, 2], level: 'full', answer: { what: 'dance' }, fixture: 3 }), { id: 'a', text: 'x', fixture: '' });
+});
+
+test('a reading may have a comma or a point, and never two meanings', () => {
+  for (const [typed, lux] of [['182', 182], [' 182.5 ', 182.5], ['182,5', 182.5], ['182.5 lx', 182.5], ['3 Lux', 3], ['0', 0], ['0,125', 0.125], ['.5', 0.5],
+    ['5.', 5], ['1234', 1234], ['1.234', 1.234], ['1234,567', 1234.567], ['200000', 200000]])
+    assert.deepEqual(reading.readingOf(typed), { lux }, typed);
+  for (const typed of ['', ' ', 'lx', '-1', '+5', '1e3', '0x10', 'NaN', 'Infinity', '1,2,3', '1.2.3', '1,000.5', '12 13', '200001', '1,234', '٣', '182 cd', '.'])
+    assert.ok(reading.readingOf(typed).wrong, typed);
+});
+
+test('the sign of a luxmeter points the way it looks, as the plan lies', () => {
+  const sign = (...normal) => plan.meterSign(normal);
+  assert.deepEqual([sign(0, 0, 1).kind, sign(0, 0, -1).kind, sign(0.1, 0, 1).kind, sign(1, 0, 0).kind, sign(0.5, 0, 0.5).kind], ['up', 'down', 'up', 'side', 'side']);
+  assert.ok(sign(0, -1, 0).tip.y > 30 && Math.abs(sign(0, -1, 0).tip.x) < 1e-9, 'world −y is down');
+  assert.ok(sign(1, 0, 0).tip.x > 30);
+  for (const { path } of [sign(1, 0, 0), sign(-0.6, 0.8, 0), sign(0, 0, -1)]) assert.match(path, /^M[-\d.]+ [-\d.]+L/);
+  assert.equal(sign(0, 0, 0).kind, 'up');
 });
 
 test('a room without extent is refused, and its picture is this server\'s own', () => {

@@ -80,6 +80,24 @@ export interface Override {
   why?: string; // what keeps it from being so
 }
 
+export type AnswerWhat = 'reading'|'skip'|'other_place'|'end';
+
+/** What a client that measures by hand asks of a person in the room. */
+export interface Question {
+  id: string;    // of this question alone
+  text: string;  // where to hold the luxmeter
+  position?: Vec3;
+  normal?: Vec3;    // which way the meter looks
+  fixture: string;  // that is lit; empty: every lamp is dark
+  level?: number;   // of that fixture
+  step?: number;    // of this place
+  steps?: number;
+  readings?: number;  // so far
+  known_to?: number;  // the light at the goals: relative error so far
+  known_to_worst?: number;
+  answer?: {what: AnswerWhat; lux?: number};
+}
+
 export interface Output {
   rate_hz?: number;
   frames?: number;
@@ -106,6 +124,7 @@ export interface Status {
   devices: Device[];
   alarms: Alarm[];
   overrides: Override[];
+  question?: Question;
   output: Output;
 }
 
@@ -156,11 +175,28 @@ function oneOf<K extends string, W extends string>(from: Fields, key: K, words: 
   return found === undefined ? {} : ({ [key]: found } as Record<K, W>);
 }
 
+function readQuestion(value: unknown): Question|undefined {
+  const q = fieldsOf(value);
+  const [id, words] = [text(q['id']), text(q['text'])];
+  if (!id || !words) return undefined;
+  const answer = fieldsOf(q['answer']);
+  const {what} = oneOf(answer, 'what', ['reading', 'skip', 'other_place', 'end'] as const);
+  return {
+    id,
+    text: words,
+    fixture: text(q['fixture']),
+    ...vectors(q, 'position', 'normal'),
+    ...numbers(q, 'level', 'step', 'steps', 'readings', 'known_to', 'known_to_worst'),
+    ...(what ? {answer: {what, ...numbers(answer, 'lux')}} : {}),
+  };
+}
+
 /** undefined if this is no status at all. */
 export function readStatus(value: unknown): Status | undefined {
   const s = fieldsOf(value);
   if (typeof s['phase'] !== 'string') return undefined;
   const output = fieldsOf(s['output']);
+  const question = readQuestion(s['question']);
   return {
     rig: text(s['rig']),
     version: text(s['version']),
@@ -170,58 +206,62 @@ export function readStatus(value: unknown): Status | undefined {
     blackout: s['blackout'] === true,
     converged: s['converged'] === true,
     ...numbers(s, 'time_s', 'round', 'rounds'),
-    fixtures: listOf(s['fixtures']).map((f) => ({
-      name: text(f['name']),
-      bus: text(f['bus']),
-      address: text(f['address']),
-      ...vectors(f, 'position', 'aim'),
-      ...numbers(f, 'level', 'target_level', 'drive', 'gain', 'gain_standard_error'),
-      level_known: f['level_known'] !== false,
-      ...(f['parked'] === true ? { parked: true as const } : {}),
-      ...(f['kept_dark'] === true ? { kept_dark: true as const } : {}),
-      ...(text(f['waits_for']) ? { waits_for: text(f['waits_for']) } : {}),
-    })),
+    fixtures:
+        listOf(s['fixtures']).map((f) => ({
+                                    name: text(f['name']),
+                                    bus: text(f['bus']),
+                                    address: text(f['address']),
+                                    ...vectors(f, 'position', 'aim'),
+                                    ...numbers(f, 'level', 'target_level', 'drive', 'gain', 'gain_standard_error'),
+                                    level_known: f['level_known'] !== false,
+                                    ...(f['parked'] === true ? {parked: true as const} : {}),
+                                    ...(f['kept_dark'] === true ? {kept_dark: true as const} : {}),
+                                    ...(text(f['waits_for']) ? {waits_for: text(f['waits_for'])} : {}),
+                                  })),
     points: listOf(s['points']).map((p) => ({
-      name: text(p['name']),
-      reason: text(p['reason']),
-      limit_reason: text(p['limit_reason']),
-      ...oneOf(p, 'verdict', ['met', 'missed', 'unknown'] as const),
-      ...oneOf(p, 'limit', ['kept', 'exceeded', 'unknown'] as const),
-      ...vectors(p, 'position', 'normal'),
-      ...numbers(p, 'goal_lux', 'max_lux', 'predicted_lux', 'standard_error_lux', 'measured_lux', 'measured_age_s', 'error'),
-    })),
+                                      name: text(p['name']),
+                                      reason: text(p['reason']),
+                                      limit_reason: text(p['limit_reason']),
+                                      ...oneOf(p, 'verdict', ['met', 'missed', 'unknown'] as const),
+                                      ...oneOf(p, 'limit', ['kept', 'exceeded', 'unknown'] as const),
+                                      ...vectors(p, 'position', 'normal'),
+                                      ...numbers(
+                                          p, 'goal_lux', 'max_lux', 'predicted_lux', 'standard_error_lux',
+                                          'measured_lux', 'measured_age_s', 'error'),
+                                    })),
     luxmeters: listOf(s['luxmeters']).map((m) => ({
-      name: text(m['name']),
-      point: text(m['point']),
-      bus: text(m['bus']),
-      address: text(m['address']),
-      life: text(m['life']),
-      ...numbers(m, 'lux', 'age_s', 'tolerance'),
-    })),
+                                            name: text(m['name']),
+                                            point: text(m['point']),
+                                            bus: text(m['bus']),
+                                            address: text(m['address']),
+                                            life: text(m['life']),
+                                            ...numbers(m, 'lux', 'age_s', 'tolerance'),
+                                          })),
     devices: listOf(s['devices']).map((d) => ({
-      name: text(d['name']),
-      driver: text(d['driver']),
-      address: text(d['address']),
-      life: text(d['life']),
-      detail: text(d['detail']),
-      ...numbers(d, 'since_s', 'last_ok_s', 'sent', 'received', 'errors'),
-    })),
+                                        name: text(d['name']),
+                                        driver: text(d['driver']),
+                                        address: text(d['address']),
+                                        life: text(d['life']),
+                                        detail: text(d['detail']),
+                                        ...numbers(d, 'since_s', 'last_ok_s', 'sent', 'received', 'errors'),
+                                      })),
     alarms: listOf(s['alarms']).map((a) => ({
-      severe: a['severe'] === true,
-      device: text(a['device']),
-      text: text(a['text']),
-      ...numbers(a, 'since_s'),
-    })),
+                                      severe: a['severe'] === true,
+                                      device: text(a['device']),
+                                      text: text(a['text']),
+                                      ...numbers(a, 'since_s'),
+                                    })),
     overrides: listOf(s['overrides']).map((o) => ({
-      kind: o['kind'] === 'goal' ? ('goal' as const) : ('level' as const),
-      name: text(o['name']),
-      ...numbers(o, 'level', 'goal_lux', 'age_s', 'remaining_s'),
-      ...(o['of_plan'] === true ? { of_plan: true as const } : {}),
-      ...(text(o['why']) ? { why: text(o['why']) } : {}),
-    })),
+                                            kind: o['kind'] === 'goal' ? ('goal' as const) : ('level' as const),
+                                            name: text(o['name']),
+                                            ...numbers(o, 'level', 'goal_lux', 'age_s', 'remaining_s'),
+                                            ...(o['of_plan'] === true ? {of_plan: true as const} : {}),
+                                            ...(text(o['why']) ? {why: text(o['why'])} : {}),
+                                          })),
+    ...(question ? {question} : {}),
     output: {
       ...numbers(output, 'rate_hz', 'frames', 'p50_us', 'p99_us', 'max_us'),
-      ...(typeof output['realtime'] === 'boolean' ? { realtime: output['realtime'] } : {}),
+      ...(typeof output['realtime'] === 'boolean' ? {realtime: output['realtime']} : {}),
     },
   };
 }
@@ -297,6 +337,10 @@ export async function postLevel(fixtures: string[], level: number, for_s?: numbe
 }
 export async function postGoal(points: string[], goal_lux: number, for_s?: number): Promise<string> {
   return text((await post('/api/goal', { points, goal_lux, ...(for_s === undefined ? {} : { for_s }) }))['text']);
+}
+/** lux: of a reading. Rejects if the question is not asked any more, or was answered already. */
+export async function postAnswer(id: string, what: AnswerWhat, lux?: number): Promise<void> {
+  await post('/api/answer', {id, what, ...(lux === undefined ? {} : {lux})});
 }
 /** No names: everything. */
 export async function postRelease(names: string[] | undefined): Promise<string> {

@@ -12,12 +12,14 @@ import { HeaderView } from './views/header';
 import { OutputView } from './views/output';
 import { PlanView } from './views/plan';
 import { PointsTable } from './views/points_table';
+import {QuestionView} from './views/question';
 import { themeButton } from './views/theme';
 import { TilesView } from './views/tiles';
 
 const selection = new Selection();
 const header = new HeaderView(themeButton());
 const alarms = new AlarmsView();
+const question = new QuestionView();
 const tiles = new TilesView();
 const plan = new PlanView(selection);
 const points = new PointsTable(selection);
@@ -33,7 +35,7 @@ const main = element(
   element('div', { class: 'column wide' }, plan.root, points.root),
   element('div', { class: 'column' }, tiles.root, fixtures.root, byHand.root, meters.root, devices.root, output.root),
 );
-document.getElementById('app')!.replaceChildren(header.root, alarms.root, main);
+document.getElementById('app')!.replaceChildren(header.root, alarms.root, question.root, main);
 
 /** The room is asked for until it is there, and again when the daemon turns out to be another or a newer one. */
 let roomOf: string | undefined;
@@ -62,6 +64,7 @@ follow(
   (status) => {
     header.show(status);
     alarms.show(status.alarms);
+    question.show(status.question);
     tiles.show(status);
     plan.show(status);
     points.show(status.points);
@@ -71,6 +74,7 @@ follow(
     devices.show(status.devices);
     output.show(status.output);
     document.body.classList.toggle('dark-stage', status.blackout);
+    document.body.classList.toggle('is-asked', status.question !== undefined);
     document.body.classList.add('ready');
     void wantRoom(status);
   },

@@ -93,6 +93,26 @@ export function beamPath(from: Spot, to: Spot): string {
   );
 }
 
+/** The sign of where a luxmeter is held, about the origin: an arrow from its ring the way it looks; from above, a dot
+ *  (up, towards the viewer) or a cross (down). `tip`: where the sign ends. */
+export function meterSign(normal: readonly[number, number, number]):
+    {path: string; kind: 'side' | 'up' | 'down'; tip: Spot} {
+  const [nx, ny, nz] = normal;
+  const flat = Math.hypot(nx, ny);
+  if (flat < 0.3 * Math.hypot(nx, ny, nz) || flat === 0)
+    return {path: nz < 0 ? 'M-5 -5L5 5M-5 5L5 -5' : '', kind: nz < 0 ? 'down' : 'up', tip: {x: 0, y: METER_RING}};
+  const [x, y] = [nx / flat, -ny / flat];
+  const along = (a: number, aside: number): string =>
+      `${(x * a - y * aside).toFixed(1)} ${(y * a + x * aside).toFixed(1)}`;
+  const end = METER_RING + 24;
+  return {
+    path: `M${along(METER_RING, 0)}L${along(end, 0)}M${along(end - 9, -7)}L${along(end, 0)}L${along(end - 9, 7)}`,
+    kind: 'side',
+    tip: {x: x * end, y: y * end}
+  };
+}
+export const METER_RING = 11;
+
 /** Marker outlines about the origin, one shape per verdict, so that the plan reads without colour. */
 export const MARKER_PATHS = {
   met: 'M-6 0A6 6 0 1 1 6 0A6 6 0 1 1 -6 0Z',

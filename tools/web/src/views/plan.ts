@@ -1,16 +1,17 @@
 /** The room from above: picture, beams, fixtures with their level, measurement points by error. */
 
-import type { Room, Status } from '../api';
+import type {Question, Room, Status} from '../api';
 import { card, element, setAttribute, setText, svg } from '../dom';
 import { lux, percent } from '../format';
 import { judge } from '../judge';
-import { type Scale, type Spot, MARKER_PATHS, beamPath, namePlace, scaleFor, unfold } from '../plan_layout';
+import {type Scale, type Spot, MARKER_PATHS, METER_RING, beamPath, meterSign, namePlace, scaleFor, unfold} from '../plan_layout';
 import type { Selection } from '../selection';
 import { worksOf } from '../works';
 import { fixtureTip, pointTip, placeTip } from './tip';
 
 /** Round the room, for the names of works on its walls. */
 const MARGIN = 20;
+const LABEL_PER_LETTER = 7.4;
 const LAMP_RADIUS = 9;
 const RING_RADIUS = 11.5;
 const RING = 2 * Math.PI * RING_RADIUS;
@@ -39,6 +40,8 @@ export class PlanView {
   private drawnFor = '';
   private fixtures: FixtureMark[] = [];
   private points: PointMark[] = [];
+  private readonly asked = svg('g', {class: 'asked'});
+  private askedFor = '';
   private hovered: { kind: 'fixture' | 'point'; index: number; at: Spot } | undefined;
 
   constructor(private readonly selection: Selection) {
@@ -94,7 +97,8 @@ export class PlanView {
     const marks = width < 500 ? 0.72 : 1;
     const [beams, leaders, lamps, markers, labels] = [svg('g'), svg('g', { class: 'leaders' }), svg('g'), svg('g'), svg('g')];
     // Points over lamps: where both are at one place, the lux matter more.
-    drawing.append(beams, leaders, lamps, markers, labels);
+    drawing.append(beams, leaders, lamps, markers, labels, this.asked);
+    this.askedFor = '';
 
     this.fixtures = status.fixtures.map((fixture, index) => {
       const at = fixture.position ? scale.at(fixture.position[0], fixture.position[1]) : undefined;
@@ -162,6 +166,8 @@ export class PlanView {
       mark.line.style.opacity = level > 0 ? '0.75' : '0.4';
       mark.glow.style.fillOpacity = level > 0 ? (0.25 + 0.75 * level).toFixed(3) : '0';
       setAttribute(mark.ring, 'stroke-dasharray', `${(level * RING).toFixed(2)} ${RING.toFixed(2)}`);
+      mark.beam.classList.toggle(
+          'asked-lamp', status.question !== undefined && status.question.fixture === fixture.name);
     });
     status.points.forEach((point, index) => {
       const mark = this.points[index];
@@ -176,6 +182,7 @@ export class PlanView {
       const size = judged.verdict === 'low' || judged.verdict === 'high' ? Math.min(1, 0.5 + 4 * Math.abs(judged.error ?? 0)) : 1;
       mark.shape.style.fillOpacity = size.toFixed(2);
     });
+    this.showAsked(status.question);
     const goals = status.points.filter((p) => p.goal_lux !== undefined);
     setAttribute(
       this.drawing,
@@ -185,6 +192,39 @@ export class PlanView {
         `${goals.filter((p) => p.verdict === 'met').length} of ${goals.length} goals met. The tables hold the same numbers.`,
     );
     this.showTip();
+  }
+
+  /** Where the luxmeter is asked for. */
+  private showAsked(question: Question|undefined): void {
+    const {scale} = this;
+    const key = question?.position ? JSON.stringify([question.position, question.normal]) : 'none';
+    if (!scale || key === this.askedFor) return;
+    this.askedFor = key;
+    this.asked.replaceChildren();
+    if (!question?.position) return;
+    const at = scale.at(question.position[0], question.position[1]);
+    const sign = meterSign(question.normal ?? [0, 0, 1]);
+    // Beside the sign, where its arrow is not, and inside the room.
+    const words = `${question.position[2].toFixed(2)} m high`;
+    const wide = words.length * LABEL_PER_LETTER + 8;
+    const along = Math.abs(sign.tip.x) > Math.abs(sign.tip.y);
+    const beside = along                           ? -wide / 2 :
+        at.x + METER_RING + 6 + wide > scale.width ? -METER_RING - 6 - wide :
+                                                     METER_RING + 6;
+    const left = Math.min(Math.max(beside, -at.x), scale.width - at.x - wide);
+    const top = along ? (at.y + 40 > scale.height ? -METER_RING - 26 : METER_RING + 6) : -10;
+    setAttribute(this.asked, 'transform', moved(at));
+    setAttribute(this.asked, 'data-looks', sign.kind);
+    this.asked.append(
+        svg('circle', {class: 'asked-ground', r: METER_RING}),
+        svg('path', {class: 'asked-ground', d: sign.path}),
+        svg('circle', {class: 'asked-pulse', r: 2 * METER_RING}),
+        svg('circle', {r: METER_RING}),
+        sign.kind === 'up' ? svg('circle', {class: 'asked-dot', r: 3}) : svg('path', {d: sign.path}),
+        svg('rect', {x: left.toFixed(1), y: top, width: wide.toFixed(1), height: 20, rx: 5}),
+        svg('text', {x: (left + wide / 2).toFixed(1), y: top + 14.5, 'text-anchor': 'middle'},
+            document.createTextNode(words)),
+    );
   }
 
   private watch(group: SVGGElement, kind: 'fixture' | 'point', index: number, at: Spot): void {
