@@ -30,9 +30,9 @@ struct LampStep {
 /// Whether these levels keep every limit, if lamps are a third stronger than stated.
 [[nodiscard]] bool keeps_limits(const Rig& rig, const Eigen::MatrixXd& stated_lux, const Eigen::VectorXd& level);
 
-/// Shares of the brightest level at which a curve is read, brightest first. Few: between any two a dimmer is nearly a
-/// power.
-inline constexpr double kCurveShares[] = {1, 0.5, 0.25, 0.1, 0.05};
+/// Shares of the brightest level at which a curve is read, brightest first. Few: a dimmer is nearly a power of the level
+/// above a dead band, which curve_of() finds; what of a reading departs from that by more than its noise stays.
+inline constexpr double kCurveShares[] = {1, 0.4, 0.12, 0.05};
 
 /// Mean of a luxmeter's readings under steady light.
 struct SteadyReading {
@@ -47,7 +47,8 @@ struct ReadAtLevel {
 
 struct LampCurve {
   MeasuredCurve of_level{};  ///< share of full light by level; empty = not measured, the maker's holds
-  double error = 0;          ///< standard error of a share, relative
+  double error = 0;          ///< standard error of a share, relative, from `known_from` on
+  double known_from = 0;     ///< below this level readings tell less: there it is what the dimmer's law makes of them
 };
 
 /// brightest_first: all by the same meter at the same place. Readings that are too uncertain for a curve are left out.

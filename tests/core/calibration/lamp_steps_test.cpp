@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
+#include <random>
+#include <string>
 
 #include "core/output/dimming.h"
 
@@ -45,11 +48,61 @@ TEST(LampCurve, IsNotFoundFromReadingsThatAreTooUncertain) {
   EXPECT_TRUE(curve_of(dark).of_level.empty());
 }
 
+/// What a dimmer of this law gives, read with noise.
+std::vector<ReadAtLevel> read_of(const std::function<double(double)>& share_at, double noise, std::mt19937_64& random) {
+  std::normal_distribution<double> normal;
+  std::vector<ReadAtLevel> read;
+  for (const double level : kCurveShares) {
+    const double lux = 400 * share_at(level), error_lx = std::hypot(noise * lux, 0.02);
+    read.push_back({level, {lux + error_lx * normal(random), error_lx}});
+  }
+  return read;
+}
+
+// Between two levels a power is off by 7 % where the dimmer has a dead band of 4 %.
+TEST(LampCurve, FindsDeadBandAndTailOfADimmerThroughNoise) {
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> unit;
+  double sum = 0;
+  int count = 0, near = 0;
+  for (int dimmer = 0; dimmer < 500; ++dimmer) {
+    const double exponent = 0.8 + 1.6 * unit(random), band = 0.04 * unit(random), tail = 0.01 * unit(random);
+    const auto share_at = [&](double level) {
+      return tail + (1 - tail) * std::pow((level - band) / (1 - band), exponent);
+    };
+    const LampCurve curve = curve_of(read_of(share_at, 0.01, random));
+    ASSERT_FALSE(curve.of_level.empty());
+    for (const double level : {0.05, 0.07, 0.1, 0.15, 0.2, 0.3, 0.5, 0.7, 0.9}) {
+      if (share_at(level) < 0.005) continue;
+      const double off = share_at_level(curve.of_level, level) / share_at(level) - 1;
+      sum += off * off;
+      near += std::abs(off) < 0.04;
+      ++count;
+    }
+  }
+  RecordProperty("rms_off", std::to_string(std::sqrt(sum / count)));
+  RecordProperty("within_4_percent", std::to_string(static_cast<double>(near) / count));
+  EXPECT_LT(std::sqrt(sum / count), 0.02);
+  EXPECT_GT(near, 0.95 * count);
+}
+
+TEST(LampCurve, OfADimmerOfAnotherLawStaysAtItsReadings) {
+  std::mt19937_64 random(1);
+  const auto s_curve = [](double x) { return x * x * (3 - 2 * x); };
+  const LampCurve curve = curve_of(read_of(s_curve, 0.001, random));
+  for (const double level : kCurveShares) {
+    const double exact = s_curve(level), noise = 0.02 / (400 * exact) + 0.001;
+    EXPECT_NEAR(share_at_level(curve.of_level, level) / exact, 1, 4 * noise) << level;
+  }
+}
+
 TEST(LampCurve, LeavesOutWhatDoesNotRise) {
   const std::vector<ReadAtLevel> read{{1, {300, 1}}, {0.5, {310, 1}}, {0.25, {60, 0.5}}, {0.25, {50, 0.5}}};
   const LampCurve curve = curve_of(read);
-  ASSERT_EQ(curve.of_level.size(), 2U);
+  ASSERT_FALSE(curve.of_level.empty());
+  EXPECT_EQ(curve.of_level.front().first, 0.25);
   EXPECT_NEAR(curve.of_level.front().second, 0.2, 1e-12);
+  EXPECT_LT(share_at_level(curve.of_level, 0.5), 0.9);
 }
 
 TEST(BrightestLevels, KeepEveryLimitWithLampsAThirdStronger) {

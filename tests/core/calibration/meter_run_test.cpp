@@ -96,7 +96,7 @@ TEST(MeterRun, FindsDimmerCurvesFromLampsThatAreLitTogether) {
       if (curve.of_level.empty()) continue;
       found += bright;
       for (const auto& [level, share] : curve.of_level) {
-        if (level == 1) continue;
+        if (level == 1 || level < curve.known_from) continue;
         const double off = std::abs(share / std::pow(level, rig.exponent[f]) - 1);
         ++shares;
         within_two += off <= 2 * curve.error;
@@ -138,7 +138,7 @@ TEST(MeterRun, AMeterThatWasDisturbedWhileALampWasAloneDoesNotBendItsCurve) {
       run.take(sent, readings);
     }
     for (const auto& [level, share] : run.curves()[f].of_level) {
-      if (level == 1) continue;
+      if (level == 1 || level < run.curves()[f].known_from) continue;
       ++shares;
       within_two += std::abs(share / std::pow(level, rig.exponent[f]) - 1) <= 2 * run.curves()[f].error;
     }

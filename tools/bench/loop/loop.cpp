@@ -12,13 +12,14 @@
 
 #include "core/calibration/camera_instrument.h"
 #include "core/calibration/meter_run.h"
-#include "core/calibration/meter_timing.h"
 #include "core/calibration/rig_light.h"
 #include "core/output/dimming.h"
 #include "core/rig/rig_file.h"
 #include "core/tasks/scene_builder.h"
 #include "sim/world/world.h"
 #include "tools/bench/loop/loop_camera.h"
+#include "tools/bench/loop/many_lamps.h"
+#include "tools/bench/loop/stepped_rig.h"
 #include "tools/bench/suites.h"
 
 namespace luxrig {
@@ -29,86 +30,8 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kTransportError = 0.003, kTruthError = 0.005;
-constexpr double kSamplePeriod_s = 0.2;
-/// Lamps have arrived after this; what the daemon's own fade would take.
-constexpr double kRamp_s = 0.2, kDark_s = 1;
-/// Longer than the slowest meter's delay and the lamps' ramps.
-constexpr double kSettle_s = 4;
 /// Where the light is judged: lamps at this level as sent, or as bright as a limit lets each of them alone be.
 constexpr double kLevel = 0.4;
-
-/// A simulated rig that is told levels and asked for readings.
-class Bench {
- public:
-  Bench(sim::World& world, const Rig& rig) : world_(world), rig_(rig), now_(world.now()) {}
-
-  /// Readings of all luxmeters under one light after the other (levels of all fixtures); per light.
-  std::vector<std::vector<std::optional<SteadyReading>>> read(std::span<const std::vector<double>> plan,
-                                                              std::span<const double> together) {
-    if (timing_.empty()) timing_ = learn_timing(together);
-    const double dwell = dwell_s(timing_);
-    for (auto& samples : samples_) samples.clear();
-    ReadingLog log(timing_);
-    for (const std::vector<double>& level : plan) {
-      send(level);
-      watch(kRamp_s);
-      const double arrived_s = seconds();
-      watch(dwell);
-      log.light(arrived_s, seconds());
-    }
-    watch(log.whole_at_s() - seconds());
-    for (std::size_t m = 0; m < samples_.size(); ++m)
-      for (const TimedLux& sample : samples_[m]) log.sample(m, sample);
-    return log.readings();
-  }
-  /// True light at the points.
-  VectorXd truth_lx(std::span<const double> level) {
-    set(level);
-    const auto points = world_.points();
-    VectorXd lux(static_cast<Index>(rig_.points.size()));
-    for (Index p = 0; p < lux.size(); ++p) lux[p] = points[static_cast<std::size_t>(p)].lux;
-    return lux;
-  }
-  [[nodiscard]] double seconds() const { return to_seconds(now_.time_since_epoch()); }
-
- private:
-  void pass(double seconds) {
-    now_ += from_seconds(seconds);
-    world_.advance(now_);
-  }
-  void send(std::span<const double> level) {
-    for (std::size_t f = 0; f < level.size(); ++f) world_.set_drive(f, drive_for(rig_.fixtures[f], level[f]));
-  }
-  void set(std::span<const double> level) {
-    send(level);
-    pass(kSettle_s);
-  }
-  /// Samples all meters meanwhile.
-  void watch(double duration_s) {
-    for (const double end_s = seconds() + duration_s; seconds() < end_s;) {
-      pass(kSamplePeriod_s);
-      for (std::size_t m = 0; m < samples_.size(); ++m) samples_[m].push_back({seconds(), world_.meter_reading_lx(m)});
-    }
-  }
-  std::vector<std::optional<MeterTiming>> learn_timing(std::span<const double> together) {
-    set(std::vector<double>(together.size(), 0.0));
-    watch(kDark_s);
-    const double begun_s = seconds();
-    send(together);
-    watch(kRamp_s);
-    const double arrived_s = seconds();
-    watch(kSettle_s);
-    std::vector<std::optional<MeterTiming>> timing;
-    for (const auto& samples : samples_) timing.push_back(timing_of(samples, begun_s, arrived_s));
-    return timing;
-  }
-
-  sim::World& world_;
-  const Rig& rig_;
-  Time now_;
-  std::vector<std::vector<TimedLux>> samples_{rig_.luxmeters.size()};  ///< per luxmeter
-  std::vector<std::optional<MeterTiming>> timing_;                     ///< learnt at the first reading
-};
 
 /// A person holds a meter at places that are chosen one after the other, or at random.
 struct Hand {
@@ -173,16 +96,10 @@ Result<MeasuredRig> measure_rig(sim::World& world, const Session& session, const
                                 const std::vector<double>& brightest, const MatrixXd& stated_lux, const SeenRig& seen) {
   const Rig& rig = session.rig;
   const RayScene true_rays(sim::true_scene(session.scene, rig, deviations));
-  Bench bench(world, rig);
+  SteppedRig bench(world, rig);
   MeasuredRig measured{MeterRun(rig, brightest, stated_lux), levels_of_use(brightest), {}, {}, 0, {}};
   Photographer camera(seen, session, world, true_rays, deviations);
-  for (std::size_t taken = 0; taken < measured.run.plan().size();) {
-    std::vector<std::vector<double>> lights;
-    for (const auto& lit : std::span(measured.run.plan()).subspan(taken)) lights.push_back(levels_of(lit, rig));
-    const auto read = bench.read(lights, levels_of_use(brightest));
-    for (std::size_t k = 0; k < read.size(); ++k) measured.run.take(lights[k], read[k]);
-    taken += read.size();
-  }
+  bench.measure(measured.run, levels_of_use(brightest));
   measured.rig_seconds = bench.seconds();
   std::vector<double> alone(rig.fixtures.size(), 0.0);
   const VectorXd dark_lx = bench.truth_lx(alone);
@@ -275,11 +192,13 @@ struct Errors {
   std::vector<double> share;         ///< of each goal's light, over all rigs
   std::vector<double> in_errors;     ///< the same over the stated standard error
   std::vector<double> worst_of_rig;  ///< per rig
+  std::vector<double> seen;          ///< as share, of goals that the camera sees
   CameraBudget budget;               ///< sums of the goals' shares
   int budgets = 0;
 
+  /// seen: per point, by the camera.
   void add(const Rig& rig, const VectorXd& truth_lx, const VectorXd& level, const RigLight& light,
-           const CameraInstrument* camera) {
+           const CameraInstrument* camera, const std::vector<bool>& seen_by_it) {
     double worst = 0;
     for (std::size_t p = 0; p < rig.points.size(); ++p) {
       if (!rig.points[p].goal_lx) continue;
@@ -288,6 +207,7 @@ struct Errors {
       share.push_back(std::abs(found.lux / truth - 1));
       in_errors.push_back(std::abs(found.lux - truth) / found.standard_error_lx);
       worst = std::max(worst, share.back());
+      if (seen_by_it[p]) seen.push_back(share.back());
       if (camera) add(camera->shares_of(light.known().budget(p, level)));
     }
     worst_of_rig.push_back(worst);
@@ -324,13 +244,18 @@ struct Stated {
   std::vector<double> brightest, used;
   std::optional<RigLight> meters, camera, camera_known_paint;
   std::optional<CameraInstrument> instrument;  ///< of both the latter
+  std::vector<bool> goals_seen;                ///< per point: the camera sees it as a place
 
   [[nodiscard]] static Result<Stated> of(const Session& session, const ComputeOptions& compute) {
     const auto traced = compute_transport(session, compute);
     if (!traced) return tl::unexpected(traced.error());
     auto seen = see(session);
     if (!seen) return tl::unexpected(seen.error());
-    Stated stated{session, std::make_unique<const SeenRig>(std::move(*seen)), {}, {}, {}, {}, {}, {}};
+    Stated stated{session, std::make_unique<const SeenRig>(std::move(*seen)), {}, {}, {}, {}, {}, {}, {}};
+    for (const Point& point : session.rig.points)
+      stated.goals_seen.push_back(
+          std::any_of(stated.seen->places.begin(), stated.seen->places.end(),
+                      [&](const SeenPlace& place) { return place.position_world_m == point.position_world_m; }));
     const auto fixtures = static_cast<Index>(session.rig.fixtures.size());
     stated.brightest = brightest_levels(session.rig, traced->lux_per_level.leftCols(fixtures));
     stated.used = levels_of_use(stated.brightest);
@@ -384,6 +309,7 @@ Result<Learnt> learn_case(const Stated& stated, const Case& how, const MeasuredR
 }  // namespace
 
 std::vector<BenchRow> bench_loop(const BenchOptions& options) {
+  if (options.only == kManyLamps) return many_lamps(options);
   const auto rig_file = options.rigs.empty() ? std::filesystem::path("rigs/gallery/rig.toml") : options.rigs.front();
   auto rig = load_rig(rig_file);
   if (!rig) {
@@ -432,7 +358,7 @@ std::vector<BenchRow> bench_loop(const BenchOptions& options) {
         if (!learnt) return failed(learnt.error().detail);
         seconds[c] += std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count() / seeds;
         errors[c].add(session->rig, measured->truth_lx, learnt->share, learnt->light,
-                      kCases[c].camera ? &*stated->instrument : nullptr);
+                      kCases[c].camera ? &*stated->instrument : nullptr, stated->goals_seen);
       }
     }
   }
@@ -447,6 +373,8 @@ std::vector<BenchRow> bench_loop(const BenchOptions& options) {
     if (kCases[c].meters || kCases[c].hand.readings > 0) row.target_error = 0.05;
     row.further = {{"median", fmt::format("{:.3f}", percentile(errors[c].share, 0.5))},
                    {"within_5", fmt::format("{:.3f}", share_within(errors[c].share, 0.05))},
+                   {"seen_95", fmt::format("{:.3f}", percentile(errors[c].seen, 0.95))},
+                   {"seen_within_5", fmt::format("{:.3f}", share_within(errors[c].seen, 0.05))},
                    {"worst", fmt::format("{:.3f}", percentile(errors[c].worst_of_rig, 1))},
                    {"rigs_within_8", fmt::format("{:.2f}", share_within(errors[c].worst_of_rig, 0.08))},
                    {"rig_seconds", kCases[c].meters ? fmt::format("{:.0f}", rig_seconds) : ""},
