@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/calibration/calibration_report.h"
+#include "core/calibration/camera_section.h"
 #include "core/output/dimming.h"
 #include "core/text/plain_text.h"
 
@@ -142,6 +143,8 @@ constexpr const char* kStyle =
     ".wide { overflow-x: auto; } table { border-collapse: collapse; }\n"
     "th, td { padding: 0.15rem 1rem 0.15rem 0; text-align: left; white-space: nowrap; } th { font-weight: 600; }\n"
     "svg { width: 100%; max-width: 44rem; height: auto; } svg.small { max-width: 20rem; }\n"
+    "img { display: block; max-width: 100%; height: auto; margin: 0.6rem 0; }\n"
+    "summary { cursor: pointer; padding: 0.6rem 0; }\n"
     "svg text { font-size: 11px; fill: currentColor; } .grid { stroke: #999; stroke-width: 0.5; fill: none; }\n"
     ".before { fill: #c8c8c8; } .now, .fits { fill: #1668b4; } .odd { fill: #c33; }\n"
     ".curve { fill: none; stroke: #1668b4; stroke-width: 1.2; } .curve:hover { stroke-width: 3; }\n"
@@ -163,6 +166,7 @@ std::string to_html(const CalibrationReport& report) {
       "<h2>How well the light at the goals is known</h2>\n<p>Every lamp at {:.0f} % of its light. Grey: before, blue: "
       "now.</p>\n{}<div class=\"wide\">\n{}</div>\n",
       100 * report.level, goals_plot(report), goals_table(report));
+  html += camera_section(report);
   html += "<h2>Not found out</h2>\n";
   html += report.not_found.empty() ? "<p>Nothing is left open.</p>\n" : list_of(report.not_found);
   if (!report.to_settle.empty()) {

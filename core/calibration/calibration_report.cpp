@@ -70,6 +70,40 @@ void tell_what_is_missing(const Calibration& found, const LightUnknowns& known, 
 
 Json pair_of(double value, double error) { return Json::array({value, error}); }
 
+Json vector_of(const Vec3& v) { return Json::array({v.x(), v.y(), v.z()}); }
+
+Json json_of(const CalibrationReport::SeenBy& seen) {
+  Json json;
+  json["name"] = seen.camera;
+  json["full_pixels"] = seen.overflow.pixel_share;
+  json["places"] = seen.overflow.places;
+  json["places_left_out"] = seen.overflow.full_places;
+  if (seen.variance)
+    for (const CameraBudgetPart& part : kCameraBudgetParts)
+      json["share_of_variance"][part.key] = *seen.variance.*part.share;
+  return json;
+}
+
+Json json_of(const LuxMap& map) {
+  Json json;
+  json["camera"] = map.camera;
+  json["light"] = map.light;
+  json["share_of_full_light"] = Json::object();
+  for (const auto& [fixture, share] : map.shares) json["share_of_full_light"][fixture] = share;
+  json["places"] = Json::array();
+  for (const LuxMap::Place& place : map.places) {
+    Json entry;
+    if (!place.point.empty()) entry["point"] = place.point;
+    entry["position_m"] = vector_of(place.position_world_m);
+    entry["normal"] = vector_of(place.normal_world);
+    entry["at_px"] = Json::array({place.x_px, place.y_px});
+    entry["lux"] = place.light.lux;
+    entry["standard_error_lx"] = place.light.standard_error_lx;
+    json["places"].push_back(std::move(entry));
+  }
+  return json;
+}
+
 }  // namespace
 
 CalibrationReport report_of(const Session& session, const RigLight& before, const RigLight& now, Calibration found,
@@ -115,6 +149,8 @@ std::string to_json(const CalibrationReport& report) {
                                 {"in_errors", reading.in_errors}});
   json["not_found"] = report.not_found;
   json["to_settle"] = report.to_settle;
+  if (report.seen) json["camera"] = json_of(*report.seen);
+  if (report.map) json["map"] = json_of(*report.map);
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -2,10 +2,14 @@
 /// What a calibration found, for a person who wants to know whether to believe it: what was wrong before, what is known
 /// now, how well the readings agree, what could not be found out, and which measurement would settle it.
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "core/calibration/camera_instrument.h"
+#include "core/calibration/camera_run.h"
+#include "core/calibration/lux_map.h"
 #include "core/calibration/rig_light.h"
 #include "core/estimation/calibration.h"
 
@@ -26,6 +30,11 @@ struct CalibrationReport {
     double explained_lx = 0;  ///< by what is known now
     double in_errors = 0;     ///< how far off, in standard errors of both
   };
+  struct SeenBy {
+    std::string camera;
+    std::optional<CameraBudget> variance;  ///< of the light at the goals; none = the rig has no goal
+    CameraOverflow overflow;
+  };
 
   Calibration found;
   std::vector<std::string> by;  ///< what measured: "luxmeters that hang"
@@ -34,6 +43,8 @@ struct CalibrationReport {
   std::vector<Reading> readings;
   std::vector<std::string> not_found;  ///< a sentence each
   std::vector<std::string> to_settle;  ///< points where a luxmeter would settle most of the rest, best first
+  std::optional<SeenBy> seen{};        ///< if a camera measured
+  std::optional<LuxMap> map{};         ///< of what it sees
 };
 
 /// before, now: the light before and after it was measured, of this session. level: share of full light of every lamp at

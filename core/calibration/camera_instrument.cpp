@@ -14,6 +14,8 @@ constexpr std::size_t kLens = 3, kFlare = 0, kHalo = 1;
 /// A place says nothing of a lamp that gives it less than this of its brightest: there stray light rules.
 constexpr double kSeen = 0.02;
 constexpr double kDarkest_lx = 0.05;
+/// A response's error over that before anything was measured: above, readings have told nothing.
+constexpr double kToldNothing = 0.9;
 
 void append(Eigen::VectorXd& values, std::size_t count, double value) {
   const auto more = static_cast<Index>(count);
@@ -98,6 +100,36 @@ CameraBudget CameraInstrument::shares_of(const LightBudget& budget) const {
   shares.noise = budget.noise / all;
   shares.other = 1 - shares.lens - shares.response - shares.reflectance - shares.stray - shares.lamps - shares.noise;
   return shares;
+}
+
+std::optional<CameraBudget> CameraInstrument::of_goals(const Rig& rig, const LightUnknowns& known,
+                                                       const Eigen::VectorXd& level) const {
+  CameraBudget sum;
+  double goals = 0;
+  for (std::size_t p = 0; p < rig.points.size(); ++p) {
+    if (!rig.points[p].goal_lx) continue;
+    const CameraBudget shares = shares_of(known.budget(p, level));
+    for (const CameraBudgetPart& part : kCameraBudgetParts) sum.*part.share += shares.*part.share;
+    ++goals;
+  }
+  if (!(goals > 0)) return std::nullopt;
+  for (const CameraBudgetPart& part : kCameraBudgetParts) sum.*part.share /= goals;
+  return sum;
+}
+
+void CameraInstrument::put(const Rig& rig, const LightUnknowns& known, CalibratedCamera& into) const {
+  const auto relative_error = [&](std::size_t meter) {
+    return known.meter_gain_standard_error(meter) / known.meter_gain(meter);
+  };
+  for (std::size_t k = 0; k < kLens; ++k)
+    into.lens_loss[k] = {std::log(known.meter_gain(first_lens_ + k)), relative_error(first_lens_ + k)};
+  into.flare = {known.stray(first_stray_ + kFlare), known.stray_standard_error(first_stray_ + kFlare)};
+  into.halo = {known.stray(first_stray_ + kHalo), known.stray_standard_error(first_stray_ + kHalo)};
+  into.responses.clear();
+  for (std::size_t l = 0; l < responses_; ++l)
+    if (const std::size_t meter = response_to(l); relative_error(meter) < kToldNothing * usual_.log_response)
+      into.responses.emplace_back(rig.luminaires[l].name,
+                                  Known{known.meter_gain(meter), known.meter_gain_standard_error(meter)});
 }
 
 }  // namespace luxrig

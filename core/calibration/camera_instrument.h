@@ -15,6 +15,7 @@
 
 #include "core/calibration/light_unknowns.h"
 #include "core/calibration/seen_places.h"
+#include "core/estimation/calibration.h"
 #include "core/rig/rig.h"
 
 namespace luxrig {
@@ -32,6 +33,19 @@ struct CameraPriors {
 struct CameraBudget {
   double lens = 0, stray = 0, response = 0, reflectance = 0, lamps = 0, noise = 0, other = 0;
 };
+struct CameraBudgetPart {
+  const char* words;  ///< for a person
+  const char* key;    ///< in JSON
+  double CameraBudget::*share;
+};
+inline constexpr CameraBudgetPart kCameraBudgetParts[] = {
+    {"lamps and mounts", "lamps", &CameraBudget::lamps},
+    {"the camera's response to each kind of lamp", "response", &CameraBudget::response},
+    {"paint", "paint", &CameraBudget::reflectance},
+    {"lens", "lens", &CameraBudget::lens},
+    {"stray light in it", "stray", &CameraBudget::stray},
+    {"noise", "noise", &CameraBudget::noise},
+    {"all else", "other", &CameraBudget::other}};
 
 class CameraInstrument {
  public:
@@ -49,6 +63,11 @@ class CameraInstrument {
   /// What the lens lets through, over that in the middle. rho: of the way to a corner.
   [[nodiscard]] double lens_share(const LightUnknowns& known, double rho) const;
   [[nodiscard]] CameraBudget shares_of(const LightBudget& budget) const;
+  /// Mean over the goals; none = the rig has no goal.
+  [[nodiscard]] std::optional<CameraBudget> of_goals(const Rig& rig, const LightUnknowns& known,
+                                                     const Eigen::VectorXd& level) const;
+  /// Lens, stray light, and responses to the kinds of lamps that readings told something of; the rest stays.
+  void put(const Rig& rig, const LightUnknowns& known, CalibratedCamera& into) const;
 
  private:
   [[nodiscard]] Showing showing(const SeenPlace& place, const SeenLight& light, int width_px, int height_px) const;

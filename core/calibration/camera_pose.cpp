@@ -21,9 +21,9 @@ using Eigen::Index;
 using Eigen::Vector2d;
 
 /// Eye to the right, up and ahead [m]; turns to the right, up and about the axis [rad]; log field of view; distortion.
-constexpr Index kUnknowns = 8;
+constexpr Index kUnknowns = kCameraUnknowns;
 using Change = Eigen::Matrix<double, kUnknowns, 1>;
-using Square = Eigen::Matrix<double, kUnknowns, kUnknowns>;
+using Square = CameraCovariance;
 /// Standard deviations of what is stated, and steps of differences.
 const Change kPrior = (Change() << 0.05, 0.05, 0.05, 0.03, 0.03, 0.03, 0.03, 0.03).finished();
 const Change kStep = (Change() << 1e-3, 1e-3, 1e-3, 1e-4, 1e-4, 1e-4, 1e-4, 1e-4).finished();
@@ -284,6 +284,15 @@ double error_of_places_px(const RayScene& rays, const Camera& camera, const Squa
   return error_px.empty() ? INFINITY : median_of(std::move(error_px));
 }
 
+/// Of a change of the camera, as one of its offset.
+Square covariance_of_offset(const Camera& stated, const Change& by, const Square& covariance) {
+  const CameraOffset there = offset_between(stated, changed(stated, by));
+  Square slope;
+  for (Index k = 0; k < kUnknowns; ++k)
+    slope.col(k) = (offset_between(stated, changed(stated, by + kStep[k] * Change::Unit(k))) - there) / kStep[k];
+  return slope * covariance * slope.transpose();
+}
+
 }  // namespace
 
 Result<FoundCamera> find_camera(const RayScene& rays, const Camera& stated, const Picture& picture) {
@@ -309,6 +318,7 @@ Result<FoundCamera> find_camera(const RayScene& rays, const Camera& stated, cons
   found.off_px = off_px.empty() ? INFINITY : median_of(std::move(off_px));
   found.stated_off_px = shown_off_px(stated, found.camera, edges);
   found.standard_error_px = error_of_places_px(rays, found.camera, fit.covariance());
+  found.covariance = covariance_of_offset(stated, fit.by(), fit.covariance());
   if (!(found.off_px <= kMostOff_px))
     return refusal(
         fmt::format("edges of the scene are seen {:.1f} px off wherever the camera is taken to be: it is "

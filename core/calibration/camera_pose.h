@@ -10,6 +10,7 @@
 
 #include <cstddef>
 
+#include "core/calibration/camera_offset.h"
 #include "core/picture/picture.h"
 #include "core/result.h"
 #include "core/scene/ray_scene.h"
@@ -22,6 +23,7 @@ struct FoundCamera {
   double stated_off_px = 0;  ///< median distance of those from where the stated camera would show them, across the edge
   double off_px = 0;         ///< the same with the found camera, of edges that the fit did not use
   double standard_error_px = 0;  ///< of where the found camera shows a place; median over the picture
+  CameraCovariance covariance = CameraCovariance::Zero();  ///< of its offset
 };
 
 /// picture: with most of the room lit, of the stated camera's size (asserted). The truth is within 2° and 10 cm of what

@@ -20,13 +20,24 @@ constexpr double kToLookAround = 0.4;
 /// A lamp's curve is read where it is at least this bright, over where it is brightest.
 constexpr double kBrightPlace = 0.3;
 
+/// Whether one of a place's pixels is full.
+bool touches_full(const SeenPlace& place, const MergedPicture& picture) {
+  const auto first = [](double middle_px) { return static_cast<int>(std::floor(middle_px - kPlaceSide_px / 2.0)); };
+  for (int y = first(place.y_px); y <= first(place.y_px) + kPlaceSide_px && y < picture.picture.height_px; ++y)
+    for (int x = first(place.x_px); x <= first(place.x_px) + kPlaceSide_px && x < picture.picture.width_px; ++x)
+      if (picture.full[static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.picture.width_px) +
+                       static_cast<std::size_t>(x)])
+        return true;
+  return false;
+}
+
 }  // namespace
 
-CameraRun::CameraRun(const Rig& rig, const RayScene& rays, const Camera& stated, std::span<const SeenPlace> places,
+CameraRun::CameraRun(const Rig& rig, const RayScene& rays, CameraStart start, std::span<const SeenPlace> places,
                      std::span<const double> brightest, std::vector<LampCurve> curves)
     : rig_(&rig),
       rays_(&rays),
-      stated_(stated),
+      start_(std::move(start)),
       stated_places_(places),
       brightest_(brightest.begin(), brightest.end()),
       curves_(std::move(curves)) {
@@ -64,23 +75,41 @@ bool CameraRun::first_of_lamp(std::size_t step) const {
          (step == 0 || !(plan_[step - 1].level > 0) || plan_[step - 1].fixture != plan_[step].fixture);
 }
 
-Result<void> CameraRun::take(std::span<const double> sent, const Picture& picture) {
-  LUXRIG_CHECK(sent.size() == rig_->fixtures.size(), "levels of {} fixtures", sent.size());
-  if (picture.width_px != stated_.width_px || picture.height_px != stated_.height_px)
-    return refusal("a picture of another size than the camera in the rig file");
-  if (!found_) {
-    auto found = find_camera(*rays_, stated_, picture);
-    if (!found) return tl::unexpected(found.error());
-    found_ = *found;
-    places_ = places_by(*rays_, found_->camera, stated_places_);
-    return {};
+Result<void> CameraRun::look_for_camera(const Picture& picture) {
+  auto found = find_camera(*rays_, start_.best(), picture);
+  found_as_before_ = found && start_.found_before;
+  if (!found && start_.found_before) found = find_camera(*rays_, start_.stated, picture);
+  if (!found) return tl::unexpected(found.error());
+  found_ = *found;
+  places_ = places_by(*rays_, found_->camera, stated_places_);
+  return {};
+}
+
+std::vector<std::optional<SeenLight>> CameraRun::light_in(const MergedPicture& picture) {
+  auto light = seen_light(picture.picture, dark_, places_);
+  for (std::size_t p = 0; p < light.size(); ++p) {
+    if (!light[p]) continue;
+    ++overflow_.places;
+    if (picture.full.empty() || !touches_full(*places_[p], picture)) continue;
+    ++overflow_.full_places;
+    light[p].reset();
   }
+  return light;
+}
+
+Result<void> CameraRun::take(std::span<const double> sent, const MergedPicture& picture) {
+  LUXRIG_CHECK(sent.size() == rig_->fixtures.size(), "levels of {} fixtures", sent.size());
+  if (picture.picture.width_px != start_.stated.width_px || picture.picture.height_px != start_.stated.height_px)
+    return refusal("a picture of another size than the camera in the rig file");
+  if (!found_) return look_for_camera(picture.picture);
   LUXRIG_CHECK(taken_.size() < plan_.size(), "all {} pictures are taken", plan_.size());
   const LampStep& step = plan_[taken_.size()];
   if (step.level > 0) {
-    taken_.push_back({sent[step.fixture], seen_light(picture, dark_, places_)});
+    taken_.push_back({sent[step.fixture], light_in(picture)});
+    const auto lit = static_cast<double>(++pictures_of_lamps_);
+    overflow_.pixel_share += (picture.full_share() - overflow_.pixel_share) / lit;
   } else {
-    dark_ = picture;
+    dark_ = picture.picture;
     taken_.emplace_back();
   }
   if (taken_.size() < plan_.size()) return {};
@@ -90,18 +119,26 @@ Result<void> CameraRun::take(std::span<const double> sent, const Picture& pictur
 }
 
 LampCurve CameraRun::curve_from(std::size_t first) const {
+  std::vector<const Taken*> steps;
+  for (std::size_t k = first; k < plan_.size() && plan_[k].level > 0 && plan_[k].fixture == plan_[first].fixture; ++k)
+    steps.push_back(&taken_[k]);
   const std::vector<std::optional<SeenLight>>& full = taken_[first].light;
   double brightest = 0;
   for (const auto& light : full)
     if (light) brightest = std::max(brightest, light->lux);
+  // The same places at each level; some are full in some pictures.
+  std::vector<std::size_t> at_all;
+  for (std::size_t p = 0; p < full.size(); ++p)
+    if (full[p] && full[p]->lux >= kBrightPlace * brightest &&
+        std::all_of(steps.begin(), steps.end(), [&](const Taken* step) { return step->light[p].has_value(); }))
+      at_all.push_back(p);
   std::vector<ReadAtLevel> read;
-  for (std::size_t k = first; k < plan_.size() && plan_[k].level > 0 && plan_[k].fixture == plan_[first].fixture; ++k) {
-    ReadAtLevel at{taken_[k].level, {}};
+  for (const Taken* step : steps) {
+    ReadAtLevel at{step->level, {}};
     double variance = 0;
-    for (std::size_t p = 0; p < full.size(); ++p) {
-      if (!full[p] || full[p]->lux < kBrightPlace * brightest) continue;
-      at.light.lux += taken_[k].light[p]->lux;
-      variance += std::pow(taken_[k].light[p]->standard_error_lx, 2);
+    for (const std::size_t p : at_all) {
+      at.light.lux += step->light[p]->lux;
+      variance += std::pow(step->light[p]->standard_error_lx, 2);
     }
     at.light.standard_error_lx = std::sqrt(variance);
     read.push_back(at);
@@ -117,8 +154,8 @@ std::vector<LightReading> CameraRun::readings(const CameraInstrument& camera, st
     const std::size_t f = plan_[k].fixture;
     const VectorXd level = share_at_level(curves_[f].of_level, taken_[k].level) *
                            VectorXd::Unit(static_cast<Index>(rig_->fixtures.size()), static_cast<Index>(f));
-    auto of_lamp =
-        camera.readings(places_, taken_[k].light, stated_.width_px, stated_.height_px, first_receiver, level);
+    auto of_lamp = camera.readings(places_, taken_[k].light, start_.stated.width_px, start_.stated.height_px,
+                                   first_receiver, level);
     readings.insert(readings.end(), std::make_move_iterator(of_lamp.begin()), std::make_move_iterator(of_lamp.end()));
   }
   return readings;

@@ -19,6 +19,9 @@ constexpr const char* kRemedy = "measure the rig again with luxrig calibrate";
 /// Farther off, the rig file describes another lamp, another paint or another place.
 constexpr double kMostScale = 4, kMostAskew_deg = 20, kMostSpeed_deg_s = 2000, kMostSettling_s = 60;
 constexpr double kMostRatio = 10, kMostOffset_m = 5, kMostTurn_deg = 180;
+/// The scale of a camera's light may be any: shares of full scale, or cd/m².
+constexpr double kMostResponse = 1e6, kMostDistortion = 1, kMostLens = 10, kMostStray = 1, kLeastFov_deg = 0.1;
+constexpr const char* kLensKeys[] = {"lens_a", "lens_b", "lens_c"};
 
 /// A lamp lights a point if it gives this share of the brightest that it gives. Its light is never known better than the
 /// least.
@@ -174,6 +177,56 @@ void each_named(const JsonReader& reader, const Json& json, const char* key, Bod
   }
 }
 
+CalibratedCamera camera_of(const JsonReader& reader, const Json& entry, const std::string& name,
+                           const std::string& path) {
+  CalibratedCamera camera;
+  camera.name = name;
+  camera.offset_m = within(reader, entry, path, "offset_m", kMostOffset_m);
+  camera.offset_error_m = within(reader, entry, path, "offset_error_m", kMostOffset_m).cwiseAbs();
+  camera.turn_deg = within(reader, entry, path, "turn_deg", kMostTurn_deg);
+  camera.turn_error_deg = within(reader, entry, path, "turn_error_deg", kMostTurn_deg).cwiseAbs();
+  // Its picture has a width and a height, so neither end is one.
+  camera.fov_deg = number_of(reader, entry, path, "fov_deg", kLeastFov_deg, 180 - kLeastFov_deg);
+  if (!(camera.fov_deg.value > 0) && !entry.contains("fov_deg")) reader.problem(path + "/fov_deg is missing", kRemedy);
+  camera.distortion = number_of(reader, entry, path, "distortion", -kMostDistortion, kMostDistortion);
+  for (std::size_t k = 0; k < camera.lens_loss.size(); ++k)
+    camera.lens_loss[k] = number_of(reader, entry, path, kLensKeys[k], -kMostLens, kMostLens);
+  camera.flare = number_of(reader, entry, path, "flare", -kMostStray, kMostStray);
+  camera.halo = number_of(reader, entry, path, "halo", -kMostStray, kMostStray);
+  const Json* responses = reader.member(entry, path, "response", false);
+  if (!responses) return camera;
+  if (!responses->is_object()) {
+    reader.wrong_type(path, "response", "an object in braces", *responses);
+    return camera;
+  }
+  for (const auto& [luminaire, value] : responses->items()) {
+    const auto pair = reader.pair(*responses, path + "/response", luminaire.c_str());
+    if (!pair) continue;
+    if (pair->x() >= 1 / kMostResponse && pair->x() <= kMostResponse && pair->y() >= 0 && pair->y() <= kMostResponse)
+      camera.responses.emplace_back(luminaire, Known{pair->x(), pair->y()});
+    else
+      reader.wrong_type(path + "/response", luminaire.c_str(), "[what it shows over the light, its standard error]",
+                        value);
+  }
+  return camera;
+}
+
+Json json_of(const CalibratedCamera& camera) {
+  Json json;
+  json["offset_m"] = triple_of(camera.offset_m);
+  json["offset_error_m"] = triple_of(camera.offset_error_m);
+  json["turn_deg"] = triple_of(camera.turn_deg);
+  json["turn_error_deg"] = triple_of(camera.turn_error_deg);
+  json["fov_deg"] = pair_of(camera.fov_deg);
+  json["distortion"] = pair_of(camera.distortion);
+  for (std::size_t k = 0; k < camera.lens_loss.size(); ++k) json[kLensKeys[k]] = pair_of(camera.lens_loss[k]);
+  json["flare"] = pair_of(camera.flare);
+  json["halo"] = pair_of(camera.halo);
+  json["response"] = Json::object();
+  for (const auto& [luminaire, response] : camera.responses) json["response"][luminaire] = pair_of(response);
+  return json;
+}
+
 /// What a calibration leaves uncertain of a lamp. Beside its output: of its light at the points that it lights.
 LightError error_of(const Calibration& calibration, const CalibratedFixture& fixture) {
   double brightest = 0;
@@ -220,6 +273,7 @@ std::string to_json(const Calibration& calibration) {
     json["luxmeters"][luxmeter.name]["gain"] = pair_of(luxmeter.gain);
   for (const CalibratedLight& light : calibration.lights)
     json["points"][light.point][light.fixture] = pair_of(light.lux);
+  for (const CalibratedCamera& camera : calibration.cameras) json["cameras"][camera.name] = json_of(camera);
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -263,6 +317,9 @@ Checked<Calibration> calibration_from_json(const std::string& text, const std::s
       else
         reader.wrong_type(list + "/" + point, fixture.c_str(), "[lux, its standard error], none below 0", value);
     }
+  });
+  each_named(reader, json, "cameras", [&](const std::string& name, const Json& entry, const std::string& list) {
+    calibration.cameras.push_back(camera_of(reader, entry, name, list + "/" + name));
   });
   if (reader.any_problem()) return tl::unexpected(reader.problems(text));
   return calibration;

@@ -2,10 +2,12 @@
 /// What was learnt of a rig that its file does not say, or says wrongly: a value, and a file beside the rig file. It is
 /// applied over the rig and never written into the rig file.
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/geometry.h"
@@ -51,6 +53,21 @@ struct CalibratedLuxmeter {
   Known gain{1, 0};  ///< reading over light, > 0
 };
 
+/// How a camera hangs, and how it shows light (core/calibration/camera_instrument.h).
+struct CalibratedCamera {
+  std::string name;
+  /// Off the rig file's place, along and about world x, y, z.
+  Vec3 offset_m = Vec3::Zero(), offset_error_m = Vec3::Zero();
+  Vec3 turn_deg = Vec3::Zero(), turn_error_deg = Vec3::Zero();
+  Known fov_deg{};     ///< from the top to the bottom of its picture, without distortion
+  Known distortion{};  ///< core/picture/picture.h: Camera
+  std::array<Known, 3>
+      lens_loss{};  ///< it shows e^(-(a ρ² + b ρ⁴ + c ρ⁶)) of what it shows in the middle; ρ = 1 in a corner
+  Known flare{}, halo{};  ///< shares of stray light, over the picture and around each pixel
+  /// Per kind of lamp that it was tried on, by the luminaire's name: what it shows over the light, > 0.
+  std::vector<std::pair<std::string, Known>> responses{};
+};
+
 /// Light of one fixture at full level at one point, at the aims of the rig file.
 struct CalibratedLight {
   std::string point, fixture;
@@ -66,6 +83,7 @@ struct Calibration {
   std::vector<CalibratedMaterial> materials;
   std::vector<CalibratedLuxmeter> luxmeters;
   std::vector<CalibratedLight> lights;
+  std::vector<CalibratedCamera> cameras{};
 };
 
 /// JSON, "luxrig_calibration": 1. A key for each entry's name, so that two files can be compared line by line.
@@ -75,8 +93,8 @@ struct Calibration {
 [[nodiscard]] Checked<Calibration> calibration_from_json(const std::string& text, const std::string& file_name);
 
 /// The rig as it was found to be: outputs, mounts, reflectances and curves, and what is still uncertain of them. Heads
-/// turn to where they shall look from their true place. A problem for each name that the rig does not have, for an aim
-/// out of reach, and for another rig's calibration.
+/// turn to where they shall look from their true place. Its cameras light nothing, and stay as in the rig file. A problem
+/// for each fixture that the rig does not have, for an aim out of reach, and for another rig's calibration.
 [[nodiscard]] Checked<Rig> calibrated(Rig rig, const Calibration& calibration, const std::string& file_name);
 
 /// Where a rig's calibration is kept.

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string>
 
+#include "core/calibration/camera_offset.h"
 #include "core/check.h"
 #include "core/estimation/calibration.h"
 #include "core/output/dimming.h"
@@ -37,6 +38,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       const double drive = luxrig::drive_for(fixture, level);
       LUXRIG_CHECK(drive >= 0 && drive <= 1, "drive {} for level {}", drive, level);
     }
+  }
+  for (const luxrig::CalibratedCamera& camera : read->cameras) {
+    const luxrig::Camera view = luxrig::view_of(luxrig::PictureCamera{}, camera);
+    LUXRIG_CHECK(luxrig::ray_direction(view, 0, 0).allFinite(), "a camera that looks nowhere");
+    LUXRIG_CHECK(view.vertical_fov_rad > 0 && view.vertical_fov_rad < luxrig::kPi, "a field of view of {}",
+                 view.vertical_fov_rad);
   }
   return 0;
 }

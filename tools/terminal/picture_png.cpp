@@ -159,49 +159,74 @@ void draw_isolux_lines(cairo_t* pen, const Picture& picture, double bottom_lx, d
   }
 }
 
-}  // namespace
+/// The top of the scale: of nearly all that is shown.
+double top_of(const Picture& picture) {
+  std::vector<float> values;
+  for (const float value : picture.illuminance_lx)
+    if (value > 0) values.push_back(value);
+  if (values.empty()) return 100;
+  std::sort(values.begin(), values.end());
+  return round_up_1_2_5(values[static_cast<std::size_t>(0.995 * static_cast<double>(values.size() - 1))]);
+}
 
-std::string write_false_colour(const Picture& picture, const std::string& title, std::optional<double> max_lx,
-                               const std::filesystem::path& file) {
-  if (!max_lx) {
-    std::vector<float> lux;
-    for (const float lx : picture.illuminance_lx)
-      if (lx > 0) lux.push_back(lx);
-    std::sort(lux.begin(), lux.end());
-    max_lx =
-        lux.empty() ? 100 : round_up_1_2_5(lux[static_cast<std::size_t>(0.995 * static_cast<double>(lux.size() - 1))]);
+/// A logarithmic scale of a height, beside the picture.
+void draw_legend(cairo_t* pen, const Picture& picture, const char* unit, double bottom, double top) {
+  const double left_px = picture.width_px + 12, top_px = 40, height_px = std::max(40, picture.height_px - 60);
+  for (int i = 0; i < static_cast<int>(height_px); ++i) {
+    const Vec3 colour = viridis(1 - (i + 0.5) / height_px);
+    cairo_set_source_rgb(pen, colour.x(), colour.y(), colour.z());
+    cairo_rectangle(pen, left_px, top_px + i, 20, 1);
+    cairo_fill(pen);
   }
-  const double top_lx = *max_lx, bottom_lx = top_lx / 100;
-  const auto place = [&](double lux) { return lux > 0 ? std::log(lux / bottom_lx) / std::log(top_lx / bottom_lx) : 0; };
-  const PngSurface surface = make_png_surface(picture.width_px + kLegendWidth_px, picture.height_px);
+  set_png_font(pen, 13);
+  cairo_set_source_rgb(pen, 1, 1, 1);
+  cairo_move_to(pen, left_px, 24);
+  cairo_show_text(pen, unit);
+  for (double tick = round_up_1_2_5(bottom); tick <= top * 1.001; tick = round_up_1_2_5(tick * 1.5)) {
+    const double y_px = top_px + (1 - std::log(tick / bottom) / std::log(top / bottom)) * height_px;
+    cairo_rectangle(pen, left_px + 20, y_px - 0.5, 5, 1);
+    cairo_fill(pen);
+    cairo_move_to(pen, left_px + 29, y_px + 4.5);
+    cairo_show_text(pen, fmt::format("{:g}", tick).c_str());
+  }
+}
+
+PngSurface false_colour_surface(const Picture& picture, const std::string& title, const FalseColours& colours) {
+  const double top = colours.most.value_or(top_of(picture)), bottom = top / std::pow(10, colours.decades);
+  PngSurface surface = make_png_surface(picture.width_px + kLegendWidth_px, picture.height_px);
   const PngPen pen = make_png_pen(surface);
   cairo_set_source_rgb(pen.get(), 0.1, 0.1, 0.1);
   cairo_paint(pen.get());
   paint_png(surface.get(), 0, 0, picture.width_px, picture.height_px, [&](int x, int y) {
-    const float lx = picture.illuminance_lx[static_cast<std::size_t>(y * picture.width_px + x)];
-    return lx < 0 ? Vec3(Vec3::Zero()) : viridis(place(lx));
+    const float value = picture.illuminance_lx[static_cast<std::size_t>(y * picture.width_px + x)];
+    if (value < 0) return Vec3(Vec3::Zero());
+    return viridis(value > 0 ? std::log(value / bottom) / std::log(top / bottom) : 0);
   });
-  draw_isolux_lines(pen.get(), picture, bottom_lx, top_lx);
-  const double left = picture.width_px + 12, top = 40, height = std::max(40, picture.height_px - 60);
-  for (int i = 0; i < static_cast<int>(height); ++i) {
-    const Vec3 colour = viridis(1 - (i + 0.5) / height);
-    cairo_set_source_rgb(pen.get(), colour.x(), colour.y(), colour.z());
-    cairo_rectangle(pen.get(), left, top + i, 20, 1);
-    cairo_fill(pen.get());
-  }
-  set_png_font(pen.get(), 13);
-  cairo_set_source_rgb(pen.get(), 1, 1, 1);
-  cairo_move_to(pen.get(), left, 24);
-  cairo_show_text(pen.get(), "lux");
-  for (double tick = round_up_1_2_5(bottom_lx); tick <= top_lx * 1.001; tick = round_up_1_2_5(tick * 1.5)) {
-    const double y = top + (1 - place(tick)) * height;
-    cairo_rectangle(pen.get(), left + 20, y - 0.5, 5, 1);
-    cairo_fill(pen.get());
-    cairo_move_to(pen.get(), left + 29, y + 4.5);
-    cairo_show_text(pen.get(), fmt::format("{:g}", tick).c_str());
-  }
+  draw_isolux_lines(pen.get(), picture, bottom, top);
+  draw_legend(pen.get(), picture, colours.unit, bottom, top);
   write_title(pen.get(), title, picture.height_px);
-  return write_picture(surface, file);
+  return surface;
+}
+
+std::string png_of(const PngSurface& surface) {
+  std::string bytes;
+  const auto append = [](void* to, const unsigned char* data, unsigned int size) {
+    static_cast<std::string*>(to)->append(reinterpret_cast<const char*>(data), size);
+    return CAIRO_STATUS_SUCCESS;
+  };
+  if (cairo_surface_write_to_png_stream(surface.get(), append, &bytes) != CAIRO_STATUS_SUCCESS) bytes.clear();
+  return bytes;
+}
+
+}  // namespace
+
+std::string write_false_colour(const Picture& picture, const std::string& title, std::optional<double> max_lx,
+                               const std::filesystem::path& file) {
+  return write_picture(false_colour_surface(picture, title, {"lux", 2, max_lx}), file);
+}
+
+std::string false_colour_png(const Picture& picture, const std::string& title, const FalseColours& colours) {
+  return png_of(false_colour_surface(picture, title, colours));
 }
 
 namespace {
@@ -216,15 +241,6 @@ PngSurface plan_surface(const PlanView& view) {
 
 }  // namespace
 
-std::string plan_view_png(const PlanView& view) {
-  std::string bytes;
-  const auto append = [](void* to, const unsigned char* data, unsigned int size) {
-    static_cast<std::string*>(to)->append(reinterpret_cast<const char*>(data), size);
-    return CAIRO_STATUS_SUCCESS;
-  };
-  const PngSurface surface = plan_surface(view);
-  if (cairo_surface_write_to_png_stream(surface.get(), append, &bytes) != CAIRO_STATUS_SUCCESS) bytes.clear();
-  return bytes;
-}
+std::string plan_view_png(const PlanView& view) { return png_of(plan_surface(view)); }
 
 }  // namespace luxrig

@@ -21,6 +21,16 @@ namespace luxrig {
 [[nodiscard]] std::string write_false_colour(const Picture& picture, const std::string& title,
                                              std::optional<double> max_lx, const std::filesystem::path& file);
 
+/// What colours stand for.
+struct FalseColours {
+  const char* unit = "lux";
+  double decades = 2;          ///< of the scale
+  std::optional<double> most;  ///< top of the scale; none = as above
+};
+/// The same as the bytes of a PNG; empty if memory runs out. Values: Picture::illuminance_lx, in any unit.
+[[nodiscard]] std::string false_colour_png(const Picture& picture, const std::string& title,
+                                           const FalseColours& colours);
+
 /// The bytes of a PNG; empty if memory runs out.
 [[nodiscard]] std::string plan_view_png(const PlanView& view);
 

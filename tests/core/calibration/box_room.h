@@ -1,7 +1,13 @@
 #pragma once
 /// Shared by the tests of cameras: a room with boxes, and a camera in it.
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <random>
+
 #include "core/picture/picture.h"
+#include "core/scene/ray_scene.h"
 #include "core/scene/scene.h"
 
 namespace luxrig::box_room {
@@ -46,6 +52,32 @@ inline Camera stated_camera() {
   camera.width_px = 320;
   camera.height_px = 200;
   return camera;
+}
+
+/// Light from the middle of the ceiling, as cosine and square of distance have it, and some from everywhere. What falls
+/// on a pixel is the mean over it; `noise`: of its logarithm.
+inline Picture seen_by(const RayScene& rays, const Camera& camera, double noise, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  const Vec3 lamp_m(0.3, -0.5, 2.9);
+  Picture picture;
+  picture.width_px = camera.width_px;
+  picture.height_px = camera.height_px;
+  constexpr int kAcross = 3;
+  for (int y = 0; y < camera.height_px; ++y)
+    for (int x = 0; x < camera.width_px; ++x) {
+      double light = 0;
+      for (int k = 0; k < kAcross * kAcross; ++k) {
+        const double x_px = x + (k % kAcross + 0.5) / kAcross, y_px = y + (k / kAcross + 0.5) / kAcross;
+        const auto hit = rays.nearest(camera.eye_world_m, ray_direction(camera, x_px, y_px), Vec3::Zero());
+        if (!hit) continue;
+        const Vec3 to_lamp_m = lamp_m - hit->position_world_m;
+        const double cosine = std::max(0.0, hit->normal_world.dot(to_lamp_m.normalized()));
+        light += rays.material_of(hit->triangle).luminous_reflectance() * (0.2 + cosine / to_lamp_m.squaredNorm());
+      }
+      picture.luminance_cd_m2.push_back(Vec3f::Constant(static_cast<float>(light * std::exp(noise * normal(random)))));
+    }
+  return picture;
 }
 
 }  // namespace luxrig::box_room

@@ -29,6 +29,79 @@ CalibrationReport example() {
   return report;
 }
 
+/// The same, by a camera too.
+CalibrationReport seen_example() {
+  CalibrationReport report = example();
+  CalibratedCamera camera;
+  camera.name = "door\" onload=\"x";
+  camera.offset_m = Vec3(0.03, 0.04, 0);
+  camera.offset_error_m = Vec3(0.003, 0.004, 0);
+  camera.turn_deg = Vec3(0, 0, 1.2);
+  camera.fov_deg = {58.25, 0.11};
+  camera.distortion = {-0.0123, 0.002};
+  camera.lens_loss = {Known{0.2, 0.02}, Known{0.1, 0.02}, Known{0, 0.01}};
+  camera.flare = {0.013, 0.004};
+  camera.responses = {{"amber <2>", {1.9, 0.1}}};
+  report.found.cameras = {camera};
+  CameraBudget budget;
+  budget.lens = 0.25;
+  budget.reflectance = 0.64;
+  budget.noise = 0.11;
+  report.seen = {camera.name, budget, {0.0012, 200, 3}};
+  LuxMap map;
+  map.camera = camera.name;
+  map.light = "the look in force";
+  map.shares = {{"wash", 0.35}};
+  map.places = {{"desk", {1, 2, 0.7}, Vec3::UnitZ(), 12.5, 30, {180, 9}},
+                {"", {0, 0, 0}, Vec3::UnitZ(), 5, 6, {0, 0.2}}};
+  map.lux_png = std::string("\x89PNG\0\xff", 6);
+  map.error_png = "ab";
+  report.map = map;
+  return report;
+}
+
+TEST(CalibrationReport, ByACameraHasItsMapItsErrorsAndWhatWasLeftOut) {
+  const std::string page = to_html(seen_example());
+  for (const char* text :
+       {"5.0 ± 0.5 cm", "58.25 ± 0.11°", "-0.0123 ± 0.0020", "74 %", "1.3 ± 0.4 %", "amber &lt;2&gt;", "1.9 ± 0.1",
+        "under the look in force", "180.0 ± 9.0 lx", "5.0 %", "data:image/png;base64,iVBORwD/\"",
+        "data:image/png;base64,YWI=\"", "<td>lens</td><td>25.0 %</td>", "<td>paint</td><td>64.0 %</td>",
+        "0.12 % of the pixels", "3 of 200 times"})
+    EXPECT_NE(page.find(text), std::string::npos) << text;
+  EXPECT_EQ(page.find("onload=\"x"), std::string::npos);
+  EXPECT_EQ(page.find("nan"), std::string::npos);
+  EXPECT_EQ(page.find("<script"), std::string::npos);
+  // The error of the one lit goal is 5 / 166; of the variance a quarter is the lens's, so half of it alone.
+  EXPECT_NE(page.find("<td>lens</td><td>25.0 %</td><td>± 1.5 %</td>"), std::string::npos);
+
+  const auto json = nlohmann::json::parse(to_json(seen_example()), nullptr, false);
+  ASSERT_TRUE(json.is_object());
+  EXPECT_EQ(json["camera"]["share_of_variance"]["lens"], 0.25);
+  EXPECT_EQ(json["camera"]["share_of_variance"]["paint"], 0.64);
+  EXPECT_EQ(json["camera"]["full_pixels"], 0.0012);
+  EXPECT_EQ(json["camera"]["places"], 200);
+  EXPECT_EQ(json["camera"]["places_left_out"], 3);
+  EXPECT_EQ(json["map"]["light"], "the look in force");
+  EXPECT_EQ(json["map"]["share_of_full_light"]["wash"], 0.35);
+  ASSERT_EQ(json["map"]["places"].size(), 2u);
+  EXPECT_EQ(json["map"]["places"][0]["point"], "desk");
+  EXPECT_EQ(json["map"]["places"][0]["position_m"], (nlohmann::json{1.0, 2.0, 0.7}));
+  EXPECT_EQ(json["map"]["places"][0]["lux"], 180.0);
+  EXPECT_EQ(json["map"]["places"][0]["standard_error_lx"], 9.0);
+  EXPECT_FALSE(json["map"]["places"][1].contains("point"));
+  EXPECT_FALSE(nlohmann::json::parse(to_json(example())).contains("map")) << "no camera, no map";
+}
+
+TEST(CalibrationReport, OfACameraWithoutGoalsOrPicturesIsStillAPage) {
+  CalibrationReport report;
+  report.seen.emplace().camera = "front";
+  report.map.emplace();
+  const std::string page = to_html(report);
+  EXPECT_NE(page.find("Camera \"front\""), std::string::npos);
+  EXPECT_EQ(page.find("<img"), std::string::npos);
+  EXPECT_EQ(page.find("nan"), std::string::npos);
+}
+
 TEST(CalibrationReport, IsAPageThatNoNameCanBreak) {
   const std::string page = to_html(example());
   EXPECT_NE(page.find("Calibration of hall &lt;1&gt;"), std::string::npos);

@@ -91,6 +91,16 @@ TEST(CameraInstrument, FindsLensResponsesAndFlareWithAReadingByHandForEachKindOf
       readings.push_back({0, 0, lux, 0.005 * lux, VectorXd::Unit(SeenWall::kLamps, j), 0, {}});
     }
     known.learn(readings);
+    CalibratedCamera kept;
+    camera.put(wall.rig, known, kept);
+    double log_loss = 0;
+    for (const Known& part : kept.lens_loss) log_loss += part.value;
+    EXPECT_NEAR(std::exp(-log_loss), camera.lens_share(known, 1), 1e-12) << "in a corner all powers are 1";
+    EXPECT_EQ(kept.flare, (Known{known.stray(0), known.stray_standard_error(0)}));
+    EXPECT_EQ(kept.halo, (Known{known.stray(1), known.stray_standard_error(1)}));
+    ASSERT_EQ(kept.responses.size(), 2u);
+    for (std::size_t l = 0; l < 2; ++l)
+      EXPECT_NEAR(kept.responses[l].second.value, response[l], 4 * kept.responses[l].second.standard_error) << seed;
     for (const double rho2 : {0.25, 0.5, 0.9})
       EXPECT_NEAR(camera.lens_share(known, std::sqrt(rho2)), lens(rho2), 0.03) << seed;
     EXPECT_NEAR(known.meter_gain(camera.response_to(1)) / known.meter_gain(camera.response_to(0)), 3, 0.1) << seed;
@@ -134,6 +144,36 @@ TEST(CameraInstrument, TheBudgetSumsToTheVarianceAndFallsWhereAReadingTells) {
   EXPECT_LT(after.output, 0.05 * before.output);
 }
 
+TEST(CameraInstrument, SaysNothingOfAKindOfLampThatItDidNotSee) {
+  SeenWall wall(2);
+  wall.rig.luminaires[0].name = "white";
+  wall.rig.luminaires[1].name = "amber";
+  wall.rig.points.resize(2);
+  const CameraInstrument camera(wall.rig, 2, wall.priors);
+  LightUnknowns known(wall.light, wall.priors);
+  CalibratedCamera found;
+  camera.put(wall.rig, known, found);
+  EXPECT_TRUE(found.responses.empty());
+  const std::vector<std::optional<SeenPlace>> places{wall.place(0), wall.place(1)};
+  const std::vector<std::optional<SeenLight>> light{SeenLight{100, 1, 0, 0}, SeenLight{120, 1, 0, 0}};
+  known.learn(
+      camera.readings(places, light, kWidth_px, kHeight_px, SeenWall::kPoints, VectorXd::Unit(SeenWall::kLamps, 3)));
+  camera.put(wall.rig, known, found);
+  ASSERT_EQ(found.responses.size(), 1u);
+  EXPECT_EQ(found.responses[0].first, "amber");
+
+  EXPECT_FALSE(camera.of_goals(wall.rig, known, VectorXd::Ones(SeenWall::kLamps))) << "no goal";
+  for (Point& point : wall.rig.points) point.goal_lx = 100;
+  const auto mean = camera.of_goals(wall.rig, known, VectorXd::Ones(SeenWall::kLamps));
+  ASSERT_TRUE(mean);
+  double sum = 0, of_lamps = 0;
+  for (const CameraBudgetPart& part : kCameraBudgetParts) sum += *mean.*part.share;
+  for (std::size_t p = 0; p < 2; ++p)
+    of_lamps += camera.shares_of(known.budget(p, VectorXd::Ones(SeenWall::kLamps))).lamps / 2;
+  EXPECT_NEAR(sum, 1, 1e-9);
+  EXPECT_NEAR(mean->lamps, of_lamps, 1e-12);
+}
+
 TEST(CameraInstrument, LeavesOutPlacesThatShowHardlyAnythingOfALamp) {
   SeenWall wall(1);
   const CameraInstrument camera(wall.rig, 2, wall.priors);
@@ -154,6 +194,39 @@ TEST(Exposures, AreMergedWhereTheLongerOneIsFull) {
   EXPECT_EQ(merged.luminance_cd_m2[0], Vec3f(1, 1, 1));
   EXPECT_EQ(merged.luminance_cd_m2[1], Vec3f(40, 40, 40));
   EXPECT_EQ(merged.luminance_cd_m2[2], Vec3f(3, 18, 3));
+}
+
+/// A wall with noise, and a lamp of 100 pixels in it that is brighter than the samples go.
+Picture lamp_on_wall(double lamp, double full, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  Picture picture;
+  picture.width_px = picture.height_px = 100;
+  for (int i = 0; i < 10000; ++i) {
+    const double light = (i < 100 ? lamp : 2) * (1 + 0.005 * normal(random));
+    picture.luminance_cd_m2.push_back(
+        Vec3f::Constant(static_cast<float>(std::round(std::min(light / full, 1.0) * 4095) / 4095 * full)));
+  }
+  return picture;
+}
+
+TEST(Exposures, TellWhichPixelsAreFullInTheShortest) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    EXPECT_EQ(cut_pixels(lamp_on_wall(50, 10, seed)), 100u) << "cut";
+    EXPECT_EQ(cut_pixels(lamp_on_wall(8, 10, seed)), 0u) << "the brightest, but not cut";
+    EXPECT_EQ(cut_pixels(lamp_on_wall(2, 40, seed)), 0u) << "an even wall";
+  }
+  Picture black = lamp_on_wall(8, 10, 1);
+  for (Vec3f& pixel : black.luminance_cd_m2) pixel.setZero();
+  EXPECT_EQ(cut_pixels(black), 0u);
+
+  const Picture cut = lamp_on_wall(50, 10, 3);
+  const MergedPicture merged = merged_with_full({&cut, 1}, cut_pixels(cut));
+  ASSERT_EQ(merged.full.size(), 10000u);
+  for (std::size_t i = 0; i < merged.full.size(); ++i) EXPECT_EQ(merged.full[i], i < 100) << i;
+  EXPECT_DOUBLE_EQ(merged.full_share(), 0.01);
+  EXPECT_TRUE(merged_with_full({&cut, 1}, 0).full.empty());
+  EXPECT_EQ(merged_with_full({&cut, 1}, 0).full_share(), 0);
 }
 
 }  // namespace

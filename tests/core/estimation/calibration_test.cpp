@@ -41,6 +41,19 @@ Calibration example() {
   calibration.materials = {{"plaster, white", {0.93, 0.02}}};
   calibration.luxmeters = {{"meter", {1.01, 0.004}}};
   calibration.lights = {{"picture", "spot", {410, 6}}, {"picture", "wash/red", {0, 0.1}}};
+  CalibratedCamera camera;
+  camera.name = "balcony \"left\"";
+  camera.offset_m = {0.02, -0.01, 0.005};
+  camera.offset_error_m = {0.004, 0.002, 0.003};
+  camera.turn_deg = {0.4, -0.9, 0.1};
+  camera.turn_error_deg = {0.05, 0.06, 0.02};
+  camera.fov_deg = {58.3, 0.1};
+  camera.distortion = {-0.012, 0.002};
+  camera.lens_loss = {Known{0.3, 0.02}, Known{-0.1, 0.05}, Known{0.04, 0.04}};
+  camera.flare = {0.012, 0.003};
+  camera.halo = {-0.001, 0.004};
+  camera.responses = {{"amber/wide", {1.9, 0.1}}, {"white", {0.003, 0.0001}}};
+  calibration.cameras = {camera};
   return calibration;
 }
 
@@ -75,6 +88,48 @@ TEST(Calibration, IsTheSameAfterItsFile) {
   EXPECT_EQ(read->made_for, example().made_for);
   ASSERT_EQ(read->lights.size(), 2u);
   EXPECT_EQ(read->lights[0].lux, (Known{410, 6}));
+  ASSERT_EQ(read->cameras.size(), 1u);
+  const CalibratedCamera &camera = read->cameras[0], wrote = example().cameras[0];
+  EXPECT_EQ(camera.name, wrote.name);
+  EXPECT_EQ(camera.offset_m, wrote.offset_m);
+  EXPECT_EQ(camera.offset_error_m, wrote.offset_error_m);
+  EXPECT_EQ(camera.turn_deg, wrote.turn_deg);
+  EXPECT_EQ(camera.turn_error_deg, wrote.turn_error_deg);
+  EXPECT_EQ(camera.fov_deg, wrote.fov_deg);
+  EXPECT_EQ(camera.distortion, wrote.distortion);
+  EXPECT_EQ(camera.lens_loss, wrote.lens_loss);
+  EXPECT_EQ(camera.flare, wrote.flare);
+  EXPECT_EQ(camera.halo, wrote.halo);
+  EXPECT_EQ(camera.responses, wrote.responses);
+}
+
+TEST(Calibration, WithoutACameraHasTheBytesThatItHadBefore) {
+  Calibration none = example();
+  none.cameras.clear();
+  EXPECT_EQ(to_json(none).find("cameras"), std::string::npos);
+  const auto read = calibration_from_json(to_json(none), "c.json");
+  ASSERT_TRUE(read) << read.error().front().text();
+  EXPECT_TRUE(read->cameras.empty());
+}
+
+TEST(Calibration, SaysWhatIsWrongOfACamera) {
+  const auto of_camera = [](const std::string& camera) {
+    return refused(R"({"luxrig_calibration": 1, "rig": "r", "made": "today",
+"cameras": {"front": )" +
+                   camera + "}}");
+  };
+  EXPECT_EQ(of_camera(R"({"fov_deg": [40, 0.1]})"), "nothing");
+  EXPECT_EQ(of_camera(R"({"fov_deg": [40, 0.1], "response": {"led": [0, 0.1]}})").find("c.json:2:"), 0u);
+  EXPECT_NE(of_camera("{}").find("/cameras/front/fov_deg is missing: measure the rig again"), std::string::npos)
+      << of_camera("{}");
+  for (const char* wrong :
+       {"7", R"({"fov_deg": 40})", R"({"fov_deg": [0, 0]})", R"({"fov_deg": [180, 1]})", R"({"fov_deg": [40, -1]})",
+        R"({"fov_deg": [40, 1], "offset_m": [0, 9, 0]})", R"({"fov_deg": [40, 1], "turn_deg": [1, 2]})",
+        R"({"fov_deg": [40, 1], "distortion": [3, 0]})", R"({"fov_deg": [40, 1], "lens_b": [1e9, 0]})",
+        R"({"fov_deg": [40, 1], "flare": [2, 0]})", R"({"fov_deg": [40, 1], "halo": "much"})",
+        R"({"fov_deg": [40, 1], "response": 1})", R"({"fov_deg": [40, 1], "response": {"led": 1}})",
+        R"({"fov_deg": [40, 1], "response": {"led": [1, -1]}})"})
+    EXPECT_NE(of_camera(wrong), "nothing") << wrong;
 }
 
 TEST(Calibration, SaysWhereAndWhatIsWrong) {
@@ -147,6 +202,7 @@ TEST(Calibration, IsLaidOverTheRig) {
   const Eigen::AngleAxisd turned(lamp.world_from_mount.rotation);
   EXPECT_NEAR(turned.angle(), rad_from_deg(std::sqrt(5.0)), 1e-12);
   EXPECT_EQ(applied->scene.paint.size(), 1u);
+  EXPECT_TRUE(applied->cameras.empty()) << "one that is gone lights nothing";
   // Half of its full light needs more than half of its drive.
   EXPECT_NEAR(level_at(lamp, drive_for(lamp, 0.5)), 0.5, 1e-12);
   EXPECT_GT(drive_for(lamp, 0.5), 0.5);

@@ -3,6 +3,7 @@
 #include <jpeglib.h>
 
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
@@ -238,6 +239,67 @@ TEST(DarkPictures, AreExplained) {
   outside.replace(outside.find("[2.9, 0, 1.2]"), 13, "[2.9, 0,19.0]");
   const std::string past = dark_words(room_with(outside), 1);
   EXPECT_NE(past.find("lamp shines past everything"), std::string::npos) << past;
+}
+
+/// The pixels of a PNG's bytes, sRGB 0 … 1.
+struct Drawn {
+  int width_px = 0, height_px = 0;
+  std::vector<Vec3> rgb;
+  [[nodiscard]] const Vec3& at(int x, int y) const { return rgb[static_cast<std::size_t>(y * width_px + x)]; }
+};
+
+Drawn drawn_from(const std::string& png) {
+  struct Source {
+    const std::string* png;
+    std::size_t at = 0;
+  } source{&png};
+  const auto read = [](void* from, unsigned char* data, unsigned int size) {
+    auto& rest = *static_cast<Source*>(from);
+    if (size > rest.png->size() - rest.at) return CAIRO_STATUS_READ_ERROR;
+    std::memcpy(data, rest.png->data() + rest.at, size);
+    rest.at += size;
+    return CAIRO_STATUS_SUCCESS;
+  };
+  const PngSurface surface(cairo_image_surface_create_from_png_stream(read, &source), &cairo_surface_destroy);
+  Drawn drawn{cairo_image_surface_get_width(surface.get()), cairo_image_surface_get_height(surface.get()), {}};
+  const unsigned char* bytes = cairo_image_surface_get_data(surface.get());
+  for (int y = 0; y < drawn.height_px; ++y)
+    for (int x = 0; x < drawn.width_px; ++x) {
+      std::uint32_t pixel = 0;
+      std::memcpy(&pixel, bytes + y * cairo_image_surface_get_stride(surface.get()) + 4 * x, 4);
+      drawn.rgb.emplace_back(Vec3(pixel >> 16 & 255, pixel >> 8 & 255, pixel & 255) / 255);
+    }
+  return drawn;
+}
+
+// A wall whose light grows tenfold from left to right. Who sees no colours sees it grow too, and lines of equal light.
+TEST(FalseColour, IsOrderedByBrightnessAndBlackWhereNothingIsKnown) {
+  Picture picture;
+  picture.width_px = 200;
+  picture.height_px = 120;
+  for (int y = 0; y < picture.height_px; ++y)
+    for (int x = 0; x < picture.width_px; ++x)
+      picture.illuminance_lx.push_back(y < 20 ? -1.0f : static_cast<float>(10 * std::pow(10, x / 199.0)));
+  const Drawn drawn = drawn_from(false_colour_png(picture, "", {"± %", 1, 100}));
+  ASSERT_GT(drawn.width_px, picture.width_px + 60) << "a legend";
+  ASSERT_EQ(drawn.height_px, picture.height_px);
+  double before = 0;
+  int lines = 0;
+  for (int x = 0; x < picture.width_px; ++x) {
+    EXPECT_LT(drawn.at(x, 5).norm(), 1e-9);
+    const Vec3& colour = drawn.at(x, 110);  // below the lines' labels
+    const Vec3 expected = viridis(x / 199.0);
+    if ((colour - expected).norm() > 0.05) {
+      ++lines;
+      EXPECT_GT(luminance_of_rgb(colour), luminance_of_rgb(expected)) << "a line is white";
+      continue;
+    }
+    EXPECT_GE(luminance_of_rgb(colour), before - 0.005) << x;
+    before = luminance_of_rgb(colour);
+  }
+  EXPECT_GE(lines, 2) << "at 20 and 50";
+  EXPECT_LE(lines, 6);
+  EXPECT_GT(before, 0.7);
 }
 
 }  // namespace

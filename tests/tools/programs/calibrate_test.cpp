@@ -174,6 +174,40 @@ TEST(CalibrateOverTheWire, ByACameraThatHangsAskewItFindsTheCameraAndEachLamp) {
     EXPECT_LT(output[1].get<double>(), 0.1) << lamp["name"];
   }
   EXPECT_LT(chi_squared, 3 * squared(3.5)) << measured.output;
+
+  const json& camera = calibration["cameras"]["door"];
+  ASSERT_TRUE(camera.is_object()) << calibration["cameras"];
+  for (const char* key : {"fov_deg", "distortion", "lens_a", "lens_b", "lens_c", "flare", "halo"})
+    EXPECT_GT(camera[key][1].get<double>(), 0) << key;
+  EXPECT_GT(std::abs(camera["turn_deg"][0].get<double>()) + std::abs(camera["turn_deg"][1].get<double>()) +
+                std::abs(camera["turn_deg"][2].get<double>()),
+            0.1);
+  EXPECT_FALSE(camera["response"].empty());
+
+  const json report = json::parse(text_of(folder / "room" / "calibration-report.json"), nullptr, false);
+  ASSERT_TRUE(report.is_object());
+  double shares = 0;
+  for (const json& share : report["camera"]["share_of_variance"]) shares += share.get<double>();
+  EXPECT_NEAR(shares, 1, 1e-6);
+  EXPECT_GT(report["camera"]["places"], 50);
+  EXPECT_EQ(report["map"]["light"], "the look in force");
+  ASSERT_GT(report["map"]["places"].size(), 20u);
+  for (const json& place : report["map"]["places"]) EXPECT_GT(place["standard_error_lx"].get<double>(), 0) << place;
+  EXPECT_NE(text_of(folder / "room" / "calibration-report.html").find("data:image/png;base64,"), std::string::npos);
+  for (const char* picture : {"calibration-lux.png", "calibration-lux-error.png"})
+    EXPECT_EQ(text_of(folder / "room" / picture).substr(1, 3), "PNG") << picture;
+
+  // The next one looks for the camera where it hangs.
+  rig.daemon().signal(SIGTERM);
+  rig.daemon().wait(30s);
+  rig.start_daemon();
+  ASSERT_TRUE(rig.wait_phase("holding", 90s)) << rig.daemon().output();
+  const Ran again = run(words, 280s);
+  ASSERT_EQ(again.code, 0) << again.output;
+  ASSERT_TRUE(
+      std::regex_search(again.output, off_px, std::regex("([0-9.]+) px off where the last calibration found it")))
+      << again.output;
+  EXPECT_LT(std::stod(off_px[1]), 0.5);
 }
 
 /// The same room without a limit, its head with a narrow beam.

@@ -11,9 +11,11 @@
 #include <span>
 
 #include "core/calibration/camera_instrument.h"
+#include "core/calibration/lux_map.h"
 #include "core/calibration/meter_run.h"
 #include "core/calibration/rig_light.h"
 #include "core/output/dimming.h"
+#include "core/picture/rig_camera.h"
 #include "core/rig/rig_file.h"
 #include "core/tasks/scene_builder.h"
 #include "sim/world/world.h"
@@ -81,7 +83,7 @@ LightPriors priors_of(const Rig& rig, const std::vector<double>& used) {
 struct MeasuredRig {
   MeterRun run;
   std::vector<double> used;  ///< levels of use, as sent
-  VectorXd truth_lx;         ///< of all lamps at those
+  VectorXd truth_lx;         ///< of all lamps at those; at the rig's points, then at the camera's places
   MatrixXd alone_lx;         ///< points × fixtures: of each alone at its level of use
   double rig_seconds = 0;    ///< that the run took
   Photographed seen;         ///< each lamp at its level of use
@@ -96,7 +98,7 @@ Result<MeasuredRig> measure_rig(sim::World& world, const Session& session, const
                                 const std::vector<double>& brightest, const MatrixXd& stated_lux, const SeenRig& seen) {
   const Rig& rig = session.rig;
   const RayScene true_rays(sim::true_scene(session.scene, rig, deviations));
-  SteppedRig bench(world, rig);
+  SteppedRig bench(world, seen.session.rig);
   MeasuredRig measured{MeterRun(rig, brightest, stated_lux), levels_of_use(brightest), {}, {}, 0, {}};
   Photographer camera(seen, session, world, true_rays, deviations);
   bench.measure(measured.run, levels_of_use(brightest));
@@ -188,6 +190,10 @@ Result<void> measure_by_hand(const Rig& rig, const MeasuredRig& measured, const 
   return {};
 }
 
+/// Places with less light than this share of the brightest are left out of a map's errors: relative to their light they
+/// are large, and nobody asks for them.
+constexpr double kMapDim = 0.02;
+
 struct Errors {
   std::vector<double> share;         ///< of each goal's light, over all rigs
   std::vector<double> in_errors;     ///< the same over the stated standard error
@@ -195,6 +201,7 @@ struct Errors {
   std::vector<double> seen;          ///< as share, of goals that the camera sees
   CameraBudget budget;               ///< sums of the goals' shares
   int budgets = 0;
+  std::vector<double> map, map_in_errors;  ///< of the places of the lux map, by a camera: as share and in_errors
 
   /// seen: per point, by the camera.
   void add(const Rig& rig, const VectorXd& truth_lx, const VectorXd& level, const RigLight& light,
@@ -218,6 +225,16 @@ struct Errors {
           &CameraBudget::lamps, &CameraBudget::noise, &CameraBudget::other})
       budget.*part += shares.*part;
     ++budgets;
+  }
+  /// The lux map of what the camera sees.
+  void add_map(const std::vector<LuxMap::Place>& places, const VectorXd& truth_lx) {
+    const double dim_lx = kMapDim * truth_lx.maxCoeff();
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      const double truth = truth_lx[static_cast<Index>(k)];
+      if (!(truth > dim_lx)) continue;
+      map.push_back(std::abs(places[k].light.lux / truth - 1));
+      map_in_errors.push_back(std::abs(places[k].light.lux - truth) / places[k].light.standard_error_lx);
+    }
   }
   /// Of the goals' variance, on average; empty for a case without a camera.
   [[nodiscard]] std::string of_variance(double CameraBudget::*part) const {
@@ -343,7 +360,7 @@ std::vector<BenchRow> bench_loop(const BenchOptions& options) {
       sim::Deviations real = sim::Deviations::real();
       real.seed = static_cast<std::uint64_t>(options.first_seed + s);
       if (known_paint) real.reflectance_spread = 0;
-      auto world = sim::World::make(session->rig, real, kTruthError);
+      auto world = sim::World::make(stated->seen->session.rig, real, kTruthError);
       if (!world) return failed(world.error().detail);
       const auto measured = measure_rig(**world, *session, real, stated->brightest, stated->meters->stated_lux(), *stated->seen);
       if (!measured) return failed(measured.error().detail);
@@ -359,6 +376,12 @@ std::vector<BenchRow> bench_loop(const BenchOptions& options) {
         seconds[c] += std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count() / seeds;
         errors[c].add(session->rig, measured->truth_lx, learnt->share, learnt->light,
                       kCases[c].camera ? &*stated->instrument : nullptr, stated->goals_seen);
+        if (!kCases[c].camera) continue;
+        // The levels are those that the lamps were read at, so no dimmer adds to the error.
+        const LampShares shares{learnt->share, VectorXd::Zero(learnt->share.size())};
+        errors[c].add_map(map_places(session->rig, learnt->light, view_of(stated->seen->camera), stated->seen->places,
+                                     session->rig.points.size(), shares),
+                          measured->truth_lx.tail(static_cast<Index>(stated->seen->places.size())));
       }
     }
   }
@@ -371,23 +394,24 @@ std::vector<BenchRow> bench_loop(const BenchOptions& options) {
     row.error = percentile(errors[c].share, 0.95);
     row.seconds = seconds[c];
     if (kCases[c].meters || kCases[c].hand.readings > 0) row.target_error = 0.05;
-    row.further = {{"median", fmt::format("{:.3f}", percentile(errors[c].share, 0.5))},
-                   {"within_5", fmt::format("{:.3f}", share_within(errors[c].share, 0.05))},
-                   {"seen_95", fmt::format("{:.3f}", percentile(errors[c].seen, 0.95))},
-                   {"seen_within_5", fmt::format("{:.3f}", share_within(errors[c].seen, 0.05))},
-                   {"worst", fmt::format("{:.3f}", percentile(errors[c].worst_of_rig, 1))},
-                   {"rigs_within_8", fmt::format("{:.2f}", share_within(errors[c].worst_of_rig, 0.08))},
-                   {"rig_seconds", kCases[c].meters ? fmt::format("{:.0f}", rig_seconds) : ""},
-                   {"in_2_errors", fmt::format("{:.3f}", share_within(errors[c].in_errors, 2))},
-                   {"camera_px", kCases[c].camera ? fmt::format("{:.2f}", percentile(off_px, 0.5)) : ""},
-                   {"stated_px", kCases[c].camera ? fmt::format("{:.2f}", percentile(stated_off_px, 0.5)) : ""},
-                   {"not_found", kCases[c].camera ? fmt::format("{}", camera_refused) : ""},
-                   {"of_lens", errors[c].of_variance(&CameraBudget::lens)},
-                   {"of_stray", errors[c].of_variance(&CameraBudget::stray)},
-                   {"of_response", errors[c].of_variance(&CameraBudget::response)},
-                   {"of_reflectance", errors[c].of_variance(&CameraBudget::reflectance)},
-                   {"of_lamps", errors[c].of_variance(&CameraBudget::lamps)},
-                   {"of_noise", errors[c].of_variance(&CameraBudget::noise)}};
+    row.further = {
+        {"median", fmt::format("{:.3f}", percentile(errors[c].share, 0.5))},
+        {"within_5", fmt::format("{:.3f}", share_within(errors[c].share, 0.05))},
+        {"worst", fmt::format("{:.3f}", percentile(errors[c].worst_of_rig, 1))},
+        {"rigs_within_8", fmt::format("{:.2f}", share_within(errors[c].worst_of_rig, 0.08))},
+        {"rig_seconds", kCases[c].meters ? fmt::format("{:.0f}", rig_seconds) : ""},
+        {"in_2_errors", fmt::format("{:.3f}", share_within(errors[c].in_errors, 2))},
+        {"camera_px", kCases[c].camera ? fmt::format("{:.2f}", percentile(off_px, 0.5)) : ""},
+        {"stated_px", kCases[c].camera ? fmt::format("{:.2f}", percentile(stated_off_px, 0.5)) : ""},
+        {"not_found", kCases[c].camera ? fmt::format("{}", camera_refused) : ""},
+        {"map_in_2_errors", kCases[c].camera ? fmt::format("{:.3f}", share_within(errors[c].map_in_errors, 2)) : ""},
+        {"map_95", kCases[c].camera ? fmt::format("{:.3f}", percentile(errors[c].map, 0.95)) : ""},
+        {"of_lens", errors[c].of_variance(&CameraBudget::lens)},
+        {"of_stray", errors[c].of_variance(&CameraBudget::stray)},
+        {"of_response", errors[c].of_variance(&CameraBudget::response)},
+        {"of_reflectance", errors[c].of_variance(&CameraBudget::reflectance)},
+        {"of_lamps", errors[c].of_variance(&CameraBudget::lamps)},
+        {"of_noise", errors[c].of_variance(&CameraBudget::noise)}};
     rows.push_back(std::move(row));
   }
   return rows;

@@ -11,7 +11,6 @@
 #include "core/calibration/head_found.h"
 #include "core/calibration/head_run.h"
 #include "core/output/head_travel.h"
-#include "core/picture/rig_camera.h"
 #include "core/rig/housing.h"
 #include "tools/luxrig/calibrate/camera_eye.h"
 #include "tools/terminal/command.h"
@@ -41,8 +40,7 @@ class HeadMeasurer {
   HeadMeasurer(const Session& stated, CameraEye& eye, DaemonRig& daemon, const std::stop_token& stop)
       : rig_(stated.rig), rays_(*stated.rays), eye_(eye), daemon_(daemon), stop_(stop) {}
 
-  Result<HeadView> look_around(std::size_t camera) {
-    const Camera stated = view_of(rig_.cameras[camera]);
+  Result<HeadView> look_around(const Camera& stated) {
     std::vector<double> level;
     for (const Fixture& fixture : rig_.fixtures)
       level.push_back((fixture.switched ? 1 : kToLookAround) * rig_.max_level(fixture));
@@ -50,7 +48,7 @@ class HeadMeasurer {
     const auto picture = eye_.look(stop_);
     if (!picture) return tl::unexpected(picture.error());
     HeadView view{{}, {}};
-    const auto found = find_camera(rays_, stated, *picture);
+    const auto found = find_camera(rays_, stated, picture->picture);
     const double rad_per_px = stated.vertical_fov_rad / stated.height_px;
     const double known_rad =
         found ? std::max(kCameraKnown_rad, found->standard_error_px * rad_per_px) : kCameraStated_rad;
@@ -77,7 +75,7 @@ class HeadMeasurer {
     while (const auto step = run.next()) {
       const auto picture = take(fixture, *step);
       if (!picture) return tl::unexpected(picture.error());
-      run.take(*picture);
+      run.take(picture->picture);
     }
     measured.result = run.result();
     measured.seconds = std::chrono::duration<double>(Clock::now() - begun).count();
@@ -86,7 +84,7 @@ class HeadMeasurer {
 
  private:
   /// The picture of a step. The head has arrived when it returns.
-  Result<Picture> take(std::size_t fixture, const HeadStep& step) {
+  Result<MergedPicture> take(std::size_t fixture, const HeadStep& step) {
     const Joints before = at_.value_or(rig_.fixtures[fixture].joints);
     if (step.joints.pan_rad != before.pan_rad) from_.pan = step.joints.pan_rad > before.pan_rad ? 1 : -1;
     if (step.joints.tilt_rad != before.tilt_rad) from_.tilt = step.joints.tilt_rad > before.tilt_rad ? 1 : -1;
@@ -150,8 +148,8 @@ std::string why_no_heads(const Rig& rig) {
   return {};
 }
 
-Result<std::vector<MeasuredHead>> measure_heads(const Session& stated, std::size_t camera, DaemonRig& daemon,
-                                                const std::stop_token& stop) {
+Result<std::vector<MeasuredHead>> measure_heads(const Session& stated, std::size_t camera, const Camera& view,
+                                                DaemonRig& daemon, const std::stop_token& stop) {
   std::vector<MeasuredHead> heads;
   std::vector<std::size_t> fixtures;
   for (std::size_t f = 0; f < stated.rig.fixtures.size(); ++f)
@@ -160,12 +158,12 @@ Result<std::vector<MeasuredHead>> measure_heads(const Session& stated, std::size
   auto eye = camera_eye(stated.rig, camera, daemon.sim_control());
   if (!eye) return tl::unexpected(eye.error());
   HeadMeasurer measurer(stated, **eye, daemon, stop);
-  const auto view = measurer.look_around(camera);
-  if (!view) return tl::unexpected(view.error());
+  const auto seen = measurer.look_around(view);
+  if (!seen) return tl::unexpected(seen.error());
   const Progress progress = progress_line("turning heads");
   for (const std::size_t fixture : fixtures) {
     if (progress) progress(static_cast<double>(heads.size()) / static_cast<double>(fixtures.size()));
-    auto head = measurer.measure(*view, fixture);
+    auto head = measurer.measure(*seen, fixture);
     if (!head)
       return tl::unexpected(
           Fault{head.error().cause, "", stated.rig.fixtures[fixture].name + ": " + head.error().detail, {}});
@@ -173,7 +171,7 @@ Result<std::vector<MeasuredHead>> measure_heads(const Session& stated, std::size
   }
   std::vector<HeadResult> results;
   for (MeasuredHead& head : heads) results.push_back(std::move(head.result));
-  conclude_together(view->priors, results);
+  conclude_together(seen->priors, results);
   for (std::size_t h = 0; h < heads.size(); ++h) heads[h].result = std::move(results[h]);
   return heads;
 }

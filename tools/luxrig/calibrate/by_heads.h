@@ -8,6 +8,7 @@
 
 #include "core/calibration/head_fit.h"
 #include "core/estimation/calibration.h"
+#include "core/picture/picture.h"
 #include "core/tasks/session.h"
 #include "tools/luxrig/calibrate/daemon_rig.h"
 
@@ -23,9 +24,10 @@ struct MeasuredHead {
 [[nodiscard]] std::string why_no_heads(const Rig& rig);
 
 /// One head after the other, all else dark. A head whose beam is not found is refused in its result; a fault is of the
-/// daemon or the camera.
+/// daemon or the camera. view: the camera as it is known best.
 [[nodiscard]] Result<std::vector<MeasuredHead>> measure_heads(const Session& stated, std::size_t camera,
-                                                              DaemonRig& daemon, const std::stop_token& stop);
+                                                              const Camera& view, DaemonRig& daemon,
+                                                              const std::stop_token& stop);
 
 /// Puts the heads that were found into the calibration, with all lamps of their housings. Of a head that was not, what
 /// `before` says of it stays.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <functional>
 #include <memory>
@@ -93,6 +94,7 @@ struct Measuring {
       nullptr;       ///< if one is used: its places are points of `light`, but none to hold a meter at
   bool any = false;  ///< something is measured
   int by_hand = 0;   ///< readings
+  std::optional<MeasuredByCamera> seen{};
 
   [[nodiscard]] std::vector<std::size_t> no_points() const {
     return camera ? camera->points() : std::vector<std::size_t>{};
@@ -183,11 +185,12 @@ Result<void> by_hanging_meters(Measuring& measuring) {
 }
 
 Result<void> by_camera(Measuring& measuring) {
-  const auto readings = measure_by_camera(measuring.session, *measuring.camera, measuring.daemon,
-                                          measuring.levels.brightest, measuring.curves, measuring.stop);
-  if (!readings) return tl::unexpected(readings.error());
-  measuring.any = measuring.any || !readings->empty();
-  return measuring.light.learn(*readings);
+  auto seen = measure_by_camera(measuring.session, *measuring.camera, measuring.daemon, measuring.levels.brightest,
+                                measuring.curves, measuring.stop);
+  if (!seen) return tl::unexpected(seen.error());
+  measuring.any = measuring.any || !seen->readings.empty();
+  measuring.seen = std::move(*seen);
+  return measuring.light.learn(measuring.seen->readings);
 }
 
 /// How the rig's heads hang and turn, told as it is found.
@@ -197,7 +200,8 @@ Result<std::vector<MeasuredHead>> by_heads(const Measuring& measuring) {
     fmt::print("Heads are not measured: {}.\n", why);
     return std::vector<MeasuredHead>{};
   }
-  auto heads = measure_heads(measuring.session, measuring.camera->camera, measuring.daemon, measuring.stop);
+  auto heads = measure_heads(measuring.session, measuring.camera->camera, measuring.seen->found.camera,
+                             measuring.daemon, measuring.stop);
   if (heads)
     for (const MeasuredHead& head : *heads) fmt::print("{}\n", words_of(rig, head));
   return heads;
@@ -208,13 +212,27 @@ std::string world_of(const HttpPeer& sim_control) {
   return world.empty() ? "one that does not say which" : world;
 }
 
-/// Heads that were found, and those that were before and were not measured again.
-void put_heads(const Rig& rig, const std::vector<MeasuredHead>& heads, const std::filesystem::path& file,
-               Calibration& found) {
+/// What an earlier calibration found of the same rig; none = it cannot be read, or is of another simulated rig.
+std::optional<Calibration> found_before(const std::filesystem::path& file, const std::string& world) {
   const auto text = read_file(file);
-  const auto before =
-      text ? calibration_from_json(*text, file.string()) : Checked<Calibration>(tl::unexpected(text.error()));
-  put_heads(rig, heads, before ? &*before : nullptr, found);
+  if (!text) return std::nullopt;
+  auto before = calibration_from_json(*text, file.string());
+  if (!before || before->simulated != world) return std::nullopt;
+  return std::move(*before);
+}
+
+/// The light of the look that the daemon went back to; of every lamp at its level of use if that look is dark.
+Result<LuxMap> map_of(const Measuring& measuring, std::span<const double> look, const Calibration& found,
+                      const ComputeOptions& compute) {
+  std::vector<double> level(look.begin(), look.end());
+  const bool lit = std::any_of(level.begin(), level.end(), [](double one) { return one > 0; });
+  if (!lit)
+    for (std::size_t f = 0; f < level.size(); ++f) level[f] = level_of_share(measuring.curves[f].of_level, kLevelOfUse);
+  auto map = lux_map_of(measuring.session, *measuring.camera, measuring.seen->found.camera, measuring.light,
+                        measuring.curves, level, found, compute);
+  if (map)
+    map->light = lit ? "the look in force" : fmt::format("every lamp at {:.0f} % of its light", 100 * kLevelOfUse);
+  return map;
 }
 
 std::string place_words(const Point& point) {
@@ -358,6 +376,9 @@ int run_calibrate(const CalibrateArguments& arguments) {
   }
   auto daemon = DaemonRig::of(arguments.client, rig);
   if (!daemon) return report_unreachable(daemon.error());
+  const auto file = arguments.file.value_or(calibration_file(rig));
+  const std::string world = daemon->sim_control() ? world_of(*daemon->sim_control()) : "";
+  const std::optional<Calibration> earlier = found_before(file, world);
 
   ComputeOptions compute = arguments.compute;
   compute.watch.stop = stop;
@@ -366,7 +387,7 @@ int run_calibrate(const CalibrateArguments& arguments) {
   LightPriors priors = usual_priors(rig);
   std::optional<CameraView> view;
   if (arguments.camera) {
-    auto seen = camera_view(*session, *arguments.camera, priors);
+    auto seen = camera_view(*session, *arguments.camera, earlier ? &*earlier : nullptr, priors);
     if (!seen) return report(seen.error());
     view = std::move(*seen);
   }
@@ -382,6 +403,8 @@ int run_calibrate(const CalibrateArguments& arguments) {
                       view ? &*view : nullptr,
                       false};
   const RigLight before = *light;
+  const auto look = daemon->levels_now();
+  if (!look) return report(look.error());
   if (meters)
     if (auto measured =
             open ? by_meters_in_open_hours(measuring, arguments.open_minutes) : by_hanging_meters(measuring);
@@ -402,20 +425,34 @@ int run_calibrate(const CalibrateArguments& arguments) {
     fmt::print(stderr, "luxrig: nothing was measured, so nothing is written\n");
     return kExitFailed;
   }
-  const auto file = arguments.file.value_or(calibration_file(rig));
   if (auto kept = keep_old(file); !kept) return report(kept.error());
   Calibration found = calibration_of(*session, *light, measuring.curves, utc_now());
-  if (daemon->sim_control()) found.simulated = world_of(*daemon->sim_control());
-  put_heads(rig, heads, file, found);
+  found.simulated = world;
+  put_heads(rig, heads, earlier ? &*earlier : nullptr, found);
+  put_cameras(rig, measuring.camera, measuring.seen ? &*measuring.seen : nullptr, *light, earlier ? &*earlier : nullptr,
+              found);
   if (auto written = write_file(file, to_json(found)); !written) return report(written.error());
   CalibrationReport told =
       report_of(view ? *view->session : *session, before, *light, std::move(found), kLevelOfUse, measuring.no_points());
   if (meters) told.by.emplace_back("luxmeters that hang");
   if (view) told.by.emplace_back("camera \"" + *arguments.camera + "\"");
   if (arguments.hand) told.by.emplace_back("a luxmeter in the hand");
+  if (view) {
+    told.seen = {*arguments.camera, view->instrument.of_goals(rig, light->known(), measuring.levels.use),
+                 measuring.seen->overflow};
+    auto map = map_of(measuring, *look, told.found, compute);
+    if (!map) return report(map.error());
+    told.map = std::move(*map);
+  }
   const auto page = beside(file, "-report.html");
-  for (const auto& [name, text] : {std::pair{page, to_html(told)}, {beside(file, "-report.json"), to_json(told)}})
-    if (auto written = write_file(name, text); !written) return report(written.error());
+  std::vector<std::pair<std::filesystem::path, std::string>> files{{page, to_html(told)},
+                                                                   {beside(file, "-report.json"), to_json(told)}};
+  if (told.map) {
+    files.emplace_back(beside(file, "-lux.png"), told.map->lux_png);
+    files.emplace_back(beside(file, "-lux-error.png"), told.map->error_png);
+  }
+  for (const auto& [name, bytes] : files)
+    if (auto written = write_file(name, bytes); !written) return report(written.error());
   print_report(measuring, before.error_of_goals(measuring.levels.use), told);
   fmt::print("Written: {}\nHow good it is, as a page: {}\n{}\n", file.string(), page.string(),
              arguments.file ? "It is in use once it lies beside the rig file, as calibration.json."

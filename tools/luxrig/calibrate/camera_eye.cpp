@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <utility>
 #include <vector>
 
-#include "core/calibration/exposures.h"
 #include "core/picture/pfm.h"
 #include "drivers/camera/camera_source.h"
 #include "tools/process/clock.h"
@@ -33,7 +33,7 @@ class SimulatedEye final : public CameraEye {
  public:
   SimulatedEye(HttpPeer control, std::string camera) : control_(std::move(control)), camera_(std::move(camera)) {}
 
-  Result<Picture> look(const std::stop_token& stop) override {
+  Result<MergedPicture> look(const std::stop_token& stop) override {
     std::vector<Picture> exposures;
     double underexposed = 1;
     for (int k = 0; k < kSimulatedExposures; ++k, underexposed *= kBracketStep) {
@@ -47,7 +47,7 @@ class SimulatedEye final : public CameraEye {
       if (!picture) return tl::unexpected(picture.error());
       exposures.push_back(std::move(*picture));
     }
-    return merged_exposures(exposures);
+    return merged_with_full(exposures, cut_pixels(exposures.back()));
   }
 
  private:
@@ -60,29 +60,37 @@ class RealEye final : public CameraEye {
   explicit RealEye(std::unique_ptr<CameraSource> source) : source_(std::move(source)) {}
   ~RealEye() override { source_->deactivate(now()); }
 
-  Result<Picture> look(const std::stop_token& stop) override {
+  Result<MergedPicture> look(const std::stop_token& stop) override {
     if (auto active = source_->activate(now()); !active) return tl::unexpected(active.error());
     const auto range_s = source_->exposures_s(now());
     if (!range_s) return tl::unexpected(range_s.error());
-    if (!*range_s) return take();
+    if (!*range_s) return one();
     std::vector<Picture> exposures;
     double exposure_s = std::min((*range_s)->second, kLongestExposure_s);
     for (int k = 0; k < kRealExposures && exposure_s >= (*range_s)->first; ++k, exposure_s /= kBracketStep) {
       if (stop.stop_requested()) return tl::unexpected(Fault{Cause::cancelled, "", "stopped", {}});
       if (auto set = source_->set_exposure(exposure_s); !set) return tl::unexpected(set.error());
       auto picture = take();
-      if (!picture) return picture;
+      if (!picture) return tl::unexpected(picture.error());
       exposures.push_back(std::move(*picture));
     }
-    if (exposures.empty()) return take();
-    return merged_exposures(exposures);
+    if (exposures.empty()) return one();
+    return merged_with_full(exposures, full_pixels_);
   }
 
  private:
+  Result<MergedPicture> one() {
+    const auto picture = take();
+    if (!picture) return tl::unexpected(picture.error());
+    return merged_with_full({&*picture, 1}, full_pixels_);
+  }
+
   /// In the same unit at each exposure.
   Result<Picture> take() {
     auto taken = source_->take(now());
     if (!taken) return tl::unexpected(taken.error());
+    full_pixels_ =
+        static_cast<std::size_t>(std::lround(taken->saturated_share * static_cast<double>(taken->light.size())));
     Picture picture;
     picture.width_px = taken->width_px;
     picture.height_px = taken->height_px;
@@ -93,6 +101,7 @@ class RealEye final : public CameraEye {
   }
 
   std::unique_ptr<CameraSource> source_;
+  std::size_t full_pixels_ = 0;  ///< of the last picture taken
 };
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <optional>
 #include <stop_token>
 
-#include "core/picture/picture.h"
+#include "core/calibration/exposures.h"
 #include "core/rig/rig.h"
 #include "tools/http/client.h"
 
@@ -16,7 +16,7 @@ class CameraEye {
  public:
   virtual ~CameraEye() = default;
   /// The light now: exposures long to short, merged. Linear, in cd/m² if the camera's scale is known.
-  [[nodiscard]] virtual Result<Picture> look(const std::stop_token& stop) = 0;
+  [[nodiscard]] virtual Result<MergedPicture> look(const std::stop_token& stop) = 0;
 };
 
 /// sim_control: where the simulated rig of the daemon gives pictures; none = the real camera.
