@@ -44,7 +44,7 @@ std::string map_section(const LuxMap& map) {
   std::sort(lux.begin(), lux.end());
   std::sort(shares.begin(), shares.end());
   const std::string range =
-      fmt::format("{:.3g} to {:.3g} lx at {} places, known to {:.1f} % in the middle and to {:.1f} % at the worst",
+      fmt::format("{:.3g} to {:.3g} lx at {} places, half of them known to {:.1f} % or better, the worst to {:.1f} %",
                   lux.front(), lux.back(), lux.size(), 100 * shares[shares.size() / 2], 100 * shares.back());
   std::string html = fmt::format(
       "<h2>The light where the camera sees it</h2>\n<p>Lamps only, under {}: {}. Between the places the light is "
@@ -73,7 +73,8 @@ std::string budget_section(const CalibrationReport& report) {
     const double rms = goals > 0 ? std::sqrt(squares / goals) : 0;
     html += fmt::format(
         "<p>What the rest of the error at the goals is owed to: {:.1f} % of their light, root mean square.</p>\n<div "
-        "class=\"wide\">\n<table><tr><th>owed to</th><th>share of the variance</th><th>alone it would be</th></tr>\n",
+        "class=\"wide\">\n<table class=\"words\"><tr><th>owed to</th><th>share of the variance</th><th>alone it would "
+        "be</th></tr>\n",
         100 * rms);
     for (const CameraBudgetPart& part : kCameraBudgetParts) {
       const double share = std::max(0.0, *seen.variance.*part.share);
@@ -100,7 +101,7 @@ std::string row(const char* what, const Vec3& value, const Vec3& error, const ch
 }
 
 std::string camera_table(const CalibratedCamera& camera) {
-  std::string html = "<div class=\"wide\">\n<table><tr><th>of the camera</th><th>as found</th></tr>\n";
+  std::string html = "<div class=\"wide\">\n<table class=\"words\"><tr><th>of the camera</th><th>as found</th></tr>\n";
   html += row("off the rig file's place", 100 * camera.offset_m, 100 * camera.offset_error_m, " cm", 1);
   html += row("turned", camera.turn_deg, camera.turn_error_deg, "°", 2);
   html += row("field of view, top to bottom", camera.fov_deg, "°", 2);
@@ -110,6 +111,10 @@ std::string camera_table(const CalibratedCamera& camera) {
   for (const Known& part : camera.lens_loss) log_loss += part.value;
   html += fmt::format("<tr><td>shown in a corner, of what is shown in the middle</td><td>{:.0f} %</td></tr>\n",
                       100 * std::exp(-log_loss));
+  std::string parts;
+  for (const Known& part : camera.lens_loss)
+    parts += fmt::format("{}{:.2f} ± {:.2f}", parts.empty() ? "" : ", ", part.value, part.standard_error);
+  html += fmt::format("<tr><td>its lens: a, b, c of e<sup>-(a ρ² + b ρ⁴ + c ρ⁶)</sup></td><td>{}</td></tr>\n", parts);
   const auto percent = [](const Known& share) { return Known{100 * share.value, 100 * share.standard_error}; };
   html += row("stray light over the picture", percent(camera.flare), " %", 1);
   html += row("stray light around each pixel", percent(camera.halo), " %", 1);

@@ -441,8 +441,10 @@ int run_calibrate(const CalibrateArguments& arguments) {
     told.seen = {*arguments.camera, view->instrument.of_goals(rig, light->known(), measuring.levels.use),
                  measuring.seen->overflow};
     auto map = map_of(measuring, *look, told.found, compute);
-    if (!map) return report(map.error());
-    told.map = std::move(*map);
+    if (map)
+      told.map = std::move(*map);
+    else  // what was measured is still worth its report
+      fmt::print(stderr, "luxrig: there is no map of the light: {}\n", map.error().detail);
   }
   const auto page = beside(file, "-report.html");
   std::vector<std::pair<std::filesystem::path, std::string>> files{{page, to_html(told)},
