@@ -53,7 +53,15 @@ Result<CameraView> camera_view(const Session& stated, const std::string& name, c
   if (before)
     for (const CalibratedCamera& found : before->cameras)
       if (found.name == name) start.found_before = view_of(*named, found);
-  std::vector<SeenPlace> places = seen_places(*stated.rays, start.best(), stated.rig.points, kPlacesOfCamera);
+  std::vector<SeenPlace> places = seen_places(*stated.rays, start.stated, stated.rig.points, kPlacesOfCamera);
+  if (start.found_before) {
+    auto from_there = seen_places(*stated.rays, *start.found_before, stated.rig.points, kPlacesOfCamera);
+    // From within a wall, or above the ceiling, it would see little.
+    if (2 * from_there.size() >= places.size())
+      places = std::move(from_there);
+    else
+      start.found_before.reset();
+  }
   if (places.empty()) return refusal(fmt::format("camera \"{}\" sees no matt surface to measure light on", name));
   auto session = session_of(with_places(stated.rig, places));
   if (!session) return refusal(session.error().front().text());
