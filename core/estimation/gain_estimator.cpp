@@ -153,13 +153,15 @@ bool GainEstimator::confirmed(std::size_t point) const {
   return meter_of_point_[point] && latest(*meter_of_point_[point]) != nullptr;
 }
 
-double GainEstimator::upper_gain(std::size_t fixture) const {
-  const auto j = static_cast<Index>(fixture);
+/// Limits ask for these at every point, so they are worked out once for all that is known.
+void GainEstimator::bound_gains() {
+  upper_gain_ = (gain_ + 3 * gain_error_).cwiseMin(gain_max_);
   for (std::size_t m = 0; m < over_.size(); ++m) {
     const auto i = static_cast<Index>(m);
-    if (doubted_(i, j) || (contradicted(m) && meter_(i, j) > 0)) return gain_max_;
+    const bool wrong = contradicted(m);
+    for (Index j = 0; j < upper_gain_.size(); ++j)
+      if (doubted_(i, j) || (wrong && meter_(i, j) > 0)) upper_gain_[j] = gain_max_;
   }
-  return std::min(gain_max_, gain(fixture) + 3 * gain_standard_error(fixture));
 }
 
 /// Prior covariance of the light at a row, at some levels, with the light behind a reading.
@@ -208,7 +210,7 @@ void GainEstimator::estimate(Time now) {
     for (Index j = 0; j < columns; ++j)
       if (meter_(i, j) > 0) local_variance(i, j) += std::pow(meter_error_(i, j) / meter_(i, j), 2);
   factor_error_ = (local_variance.rowwise() + prior_gain_sd_.cwiseAbs2()).cwiseSqrt();
-  if (count == 0) return;
+  if (count == 0) return bound_gains();
 
   MatrixXd light(count, columns);  // H: light of each fixture at each reading, at rated output
   VectorXd surprise(count);
@@ -250,6 +252,7 @@ void GainEstimator::estimate(Time now) {
       factor_error_(i, j) = contradiction[i] * std::sqrt(std::max(0.0, variance));
     }
   }
+  bound_gains();
 }
 
 Prediction GainEstimator::predict(const Row& row, const VectorXd& level) const {

@@ -155,7 +155,7 @@ class GainEstimator {
   /// Upper bound of the fixture's gain: estimate + 3 standard errors, at most gain_max. gain_max if a meter that it
   /// lights shows more than what it taught before: one of both was wrong. It stays so until that meter, with this lamp
   /// lit, shows what it taught.
-  [[nodiscard]] double upper_gain(std::size_t fixture) const;
+  [[nodiscard]] double upper_gain(std::size_t fixture) const { return upper_gain_[static_cast<Eigen::Index>(fixture)]; }
 
   /// A number that changes with everything learned: predictions at the same levels differ only with it.
   [[nodiscard]] std::uint64_t knowledge() const { return knowledge_; }
@@ -260,6 +260,7 @@ class GainEstimator {
   [[nodiscard]] double max_without_fixtures(const Row& row, Time now) const;
   void learn(const LuxReading& reading, const Eigen::VectorXd& level);
   void estimate(Time now);
+  void bound_gains();
   /// Per luxmeter, at least 1: how much its lessons differ from each other beyond their stated errors, whatever factor
   /// they have in common (Birge ratio: square root of χ² per degree of freedom). Some were wrong then: a lamp did not
   /// respond, or somebody shaded the meter. covariance: of the evidence; the others: per piece of it [lx].
@@ -294,7 +295,7 @@ class GainEstimator {
   std::vector<Meter> meters_;
   std::uint64_t knowledge_ = 0;
   Eigen::LDLT<Eigen::MatrixXd> innovation_;  ///< covariance of the evidence
-  Eigen::VectorXd gain_, gain_error_;
+  Eigen::VectorXd gain_, gain_error_, upper_gain_;
   Eigen::MatrixXd factor_, factor_error_;  ///< x: luxmeters × columns
 };
 
