@@ -1,21 +1,42 @@
 #include "core/show/alarm_log.h"
 
 #include <algorithm>
-#include <string>
+#include <string_view>
 
 namespace luxrig {
 
+namespace {
+
+/// A text without its figures, character by character; 0 = its end.
+class Words {
+ public:
+  explicit Words(std::string_view text) : text_(text) {}
+  [[nodiscard]] char next() {
+    while (at_ < text_.size()) {
+      const char c = text_[at_++];
+      if (c == '"') in_name_ = !in_name_;
+      if (in_name_ || !((c >= '0' && c <= '9') || c == '.')) return c;
+    }
+    return 0;
+  }
+
+ private:
+  std::string_view text_;
+  std::size_t at_ = 0;
+  bool in_name_ = false;  ///< "spot-1" and "spot-2" are two
+};
+
+}  // namespace
+
 bool is_same_alarm(const Alarm& a, const Alarm& b) {
-  if (a.severe != b.severe || a.device != b.device || a.since != b.since) return false;
-  const auto words = [](std::string text) {
-    bool in_name = false;  // "spot-1" and "spot-2" are two
-    std::erase_if(text, [&](char c) {
-      if (c == '"') in_name = !in_name;
-      return !in_name && ((c >= '0' && c <= '9') || c == '.');
-    });
-    return text;
-  };
-  return a.text == b.text || words(a.text) == words(b.text);
+  if (a.severe != b.severe || a.since != b.since || a.device != b.device) return false;
+  if (a.text == b.text) return true;
+  Words of_a(a.text), of_b(b.text);
+  for (;;) {
+    const char one = of_a.next();
+    if (one != of_b.next()) return false;
+    if (one == 0) return true;
+  }
 }
 
 std::vector<Alarm> AlarmLog::to_say(std::span<const Alarm> alarms, Time now) {

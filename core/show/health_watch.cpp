@@ -55,7 +55,34 @@ std::map<std::string, HealthWatch::Known> HealthWatch::names_of(const Rig& rig) 
   return known;
 }
 
-void HealthWatch::report(std::span<const Health> devices) { report_.assign(devices.begin(), devices.end()); }
+void HealthWatch::report(std::span<const Health> devices) {
+  const Health* const before = report_.data();
+  report_.assign(devices.begin(), devices.end());
+  const auto is_named = [](const Health& health, const std::string& name) { return health.device == name; };
+  looked_up_ = looked_up_ && report_.data() == before &&
+               std::equal(report_.begin(), report_.end(), reported_.begin(), reported_.end(), is_named);
+}
+
+void HealthWatch::look_up() {
+  if (std::exchange(looked_up_, true)) return;
+  reported_.clear();
+  counted_of_report_.clear();
+  for (const Health& health : report_) {
+    reported_.push_back(health.device);
+    const auto [entry, fresh] = counted_.try_emplace(health.device);
+    if (fresh) entry->second.known = known(health.device);
+    counted_of_report_.push_back(&entry->second);
+  }
+  counted_of_meter_.assign(meters_.size(), nullptr);
+  report_of_meter_.assign(meters_.size(), nullptr);
+  for (std::size_t i = 0; i < meters_.size(); ++i) {
+    const auto counted = counted_.find(meters_[i].name);
+    if (counted != counted_.end()) counted_of_meter_[i] = &counted->second;
+    const auto own =
+        std::find_if(report_.begin(), report_.end(), [&](const Health& h) { return h.device == meters_[i].name; });
+    if (own != report_.end()) report_of_meter_[i] = &*own;
+  }
+}
 
 void HealthWatch::heard(std::size_t luxmeter, Time taken) {
   meters_[luxmeter].heard = std::max(meters_[luxmeter].heard, taken);
@@ -217,17 +244,16 @@ void HealthWatch::join_units() {
 
 void HealthWatch::step_meter(Time now, std::size_t luxmeter, bool faulted, Duration patience) {
   Meter& meter = meters_[luxmeter];
-  const auto own =
-      std::find_if(report_.begin(), report_.end(), [&](const Health& h) { return h.device == meter.name; });
-  const std::uint64_t asked = own == report_.end() ? 0 : own->sent;
+  const Health* own = report_of_meter_[luxmeter];
+  const std::uint64_t asked = own == nullptr ? 0 : own->sent;
   const bool heard = meter.heard != meter.heard_before;
   if (heard) meter.asked_before = asked;
   meter.heard_before = meter.heard;
   const Duration silence = now - meter.heard - meter.unseen;
   const bool silent = silence > (asked > 0 && asked == meter.asked_before ? kUnaskedFor : kSilentAfter);
   const bool implausible = !meter.implausible.empty();
-  const auto counted = counted_.find(meter.name);
-  const bool missed = counted != counted_.end() && counted->second.missed;
+  const Counted* counted = counted_of_meter_[luxmeter];
+  const bool missed = counted != nullptr && counted->missed;
   // Silence and implausible readings have already lasted long enough when they are noticed.
   meter.trust.step(now, faulted || silent || implausible, missed, heard, silent || implausible ? Duration{} : patience);
   if (faulted || meter.bypassed) return;  // the device or its bus has its own alarm
@@ -274,13 +300,15 @@ bool HealthWatch::all_bypassed_on(std::size_t bus) const {
 
 /// Updates which devices are lost, from present and earlier reports.
 void HealthWatch::step_trusts(Time now, const Patience& patience) {
+  look_up();
   for (auto& entry : counted_) {
     entry.second.missed = entry.second.faulted = false;
     entry.second.answered = true;
   }
-  for (const Health& health : report_) {
-    Counted& device = counted_[health.device];
-    const Role role = known(health.device).role;
+  for (std::size_t k = 0; k < report_.size(); ++k) {
+    const Health& health = report_[k];
+    Counted& device = *counted_of_report_[k];
+    const Role role = device.known.role;
     const bool single = role == Role::fixture || role == Role::axis || role == Role::luxmeter;
     device.faulted = health.life == Life::faulted;
     device.missed = single && health.errors > device.errors;  // a bus counts the errors of all its devices
@@ -290,7 +318,7 @@ void HealthWatch::step_trusts(Time now, const Patience& patience) {
   }
   for (auto entry = counted_.begin(); entry != counted_.end();) {
     Counted& device = entry->second;
-    const Role role = known(entry->first).role;
+    const Role role = device.known.role;
     if (role == Role::luxmeter) {  // step_meter does this
       ++entry;
       continue;
@@ -298,6 +326,7 @@ void HealthWatch::step_trusts(Time now, const Patience& patience) {
     const bool turns = role == Role::axis || role == Role::axes_bus;
     device.trust.step(now, device.faulted, device.missed, device.answered, turns ? Duration{} : patience.lamps);
     const bool forgotten = (role == Role::unknown || role == Role::bus_part) && !device.faulted && !device.trust.lost();
+    if (forgotten) looked_up_ = false;
     entry = forgotten ? counted_.erase(entry) : std::next(entry);
   }
 }
@@ -315,7 +344,7 @@ void HealthWatch::step(Time now, const Patience& patience) {
   const Duration late = std::max(Duration{}, now - stepped_ - kLongestStep);
   stepped_ = now;
   for (Meter& meter : meters_) meter.unseen = meter.heard == meter.heard_before ? meter.unseen + late : Duration{};
-  const std::vector<Alarm> before = std::exchange(alarms_, {});
+  std::vector<Alarm> before = std::exchange(alarms_, {});
   light_lost_ = false;
   all_lost_ = false;
   lamp_lost_.assign(bus_of_fixture_.size(), false);
@@ -336,7 +365,7 @@ void HealthWatch::step(Time now, const Patience& patience) {
   for (const auto& entry : counted_) {
     const std::string& name = entry.first;
     const Counted& device = entry.second;
-    const auto [role, index] = known(name);
+    const auto [role, index] = device.known;
     if (role == Role::luxmeter) continue;
     const bool bus = role == Role::light_bus || role == Role::axes_bus || role == Role::meter_bus;
     if (bus) bus_faulted[index] = device.faulted;
@@ -381,6 +410,14 @@ void HealthWatch::step(Time now, const Patience& patience) {
     const bool bus = meters_[i].bus < bus_faulted.size() && bus_faulted[meters_[i].bus];
     step_meter(now, i, meter_faulted[i] || bus, patience.meters);
   }
+  const auto equal = [](const Alarm& a, const Alarm& b) {
+    return a.severe == b.severe && a.since == b.since && a.device == b.device && a.text == b.text;
+  };
+  if (std::equal(alarms_.begin(), alarms_.end(), worked_out_.begin(), worked_out_.end(), equal)) {
+    alarms_ = std::move(before);
+    return;
+  }
+  worked_out_ = alarms_;
   for (Alarm& alarm : alarms_) {
     const auto said =
         std::find_if(before.begin(), before.end(), [&](const Alarm& b) { return is_same_alarm(alarm, b); });

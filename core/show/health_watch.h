@@ -25,6 +25,8 @@ class HealthWatch {
   static constexpr Duration kLongestStep = std::chrono::milliseconds(200);
 
   explicit HealthWatch(const Rig& rig);
+  HealthWatch(const HealthWatch&) = delete;
+  HealthWatch& operator=(const HealthWatch&) = delete;
 
   /// Per fixture and per luxmeter; a value means bypassed. A bypassed device raises no alarm, and its loss is no lost
   /// light. A bypassed luxmeter counts as lost, but not in any_meter_lost().
@@ -117,10 +119,20 @@ class HealthWatch {
     std::uint64_t errors = 0, received = 0;  ///< as reported last
     bool missed = false, answered = true;    ///< between the last two steps
     bool faulted = false;                    ///< as reported last
+    Known known;
   };
   std::map<std::string, Counted> counted_;  ///< by device
   std::vector<Health> report_;
+  /// The devices of the last report. Drivers report the same ones several times a second, and looking all of them up by
+  /// name takes longer than all else here.
+  void look_up();
+  bool looked_up_ = false;                      ///< for the last report
+  std::vector<std::string> reported_;           ///< their names, when they were looked up
+  std::vector<Counted*> counted_of_report_;     ///< per entry of the report
+  std::vector<Counted*> counted_of_meter_;      ///< per luxmeter; null = it was never reported
+  std::vector<const Health*> report_of_meter_;  ///< per luxmeter; null = it is not reported
   std::vector<Alarm> alarms_;
+  std::vector<Alarm> worked_out_;  ///< the same by present figures, before the first figures were put in
   std::vector<bool> lamp_bypassed_;                                         ///< per fixture
   std::vector<bool> lamp_lost_, lamp_silent_, lamp_failing_, motion_lost_;  ///< per fixture
   bool light_lost_ = false, all_lost_ = false;
