@@ -28,10 +28,12 @@ void Dimmer::set_drive(double drive) {
 void Dimmer::set_out(bool out) { out_ = out; }
 
 void Dimmer::step(double dt_s) {
-  level_ = lagged(level_, settled_level(), dt_s, truth_.lag_s);
-  // An exponential never arrives. Below a billionth of full light it counts as arrived, so the world can stop
-  // computing.
-  if (std::abs(level_ - settled_level()) < 1e-9) level_ = settled_level();
+  if (level_ != settled_level()) {
+    level_ = lagged(level_, settled_level(), dt_s, truth_.lag_s);
+    // An exponential never arrives. Below a billionth of full light it counts as arrived, so the world can stop
+    // computing.
+    if (std::abs(level_ - settled_level()) < 1e-9) level_ = settled_level();
+  }
   if (truth_.warm_up_share == 0 && truth_.ageing_per_hour == 0) return;
   since_condition_s_ += dt_s;
   if (since_condition_s_ < kConditionEvery_s) return;

@@ -19,7 +19,12 @@ void LuxmeterDevice::rest(double true_lx, double tick_s, std::uint64_t tick) {
 }
 
 void LuxmeterDevice::step(double true_lx, double dt_s, std::uint64_t tick) {
-  sensor_lx_ = lagged(sensor_lx_, exposed_lx(true_lx, dt_s, tick), dt_s, truth_.lag_s);
+  if (dt_s != left_after_s_) {
+    left_after_s_ = dt_s;
+    left_ = share_left(dt_s, truth_.lag_s);
+  }
+  const double exposed = exposed_lx(true_lx, dt_s, tick);
+  sensor_lx_ = exposed + (sensor_lx_ - exposed) * left_;
   const auto period = static_cast<std::uint64_t>(std::max(1, truth_.ticks_per_sample));
   if (tick % period == static_cast<std::uint64_t>(truth_.first_tick) % period) {
     const double noisy =

@@ -43,6 +43,7 @@ class LuxmeterDevice {
 
   MeterTruth truth_;
   double sensor_lx_ = 0, reading_lx_ = 0;
+  double left_after_s_ = 0, left_ = 1;  ///< of a difference after one step: every step of a world is as long
   std::uint64_t sample_ = 0, at_tick_ = 0;
   std::deque<std::pair<std::uint64_t, double>> on_the_way_;  ///< tick at which it shows, reading
 };

@@ -120,6 +120,7 @@ void Faults::set(const std::string& device, FaultKind kind, bool on, std::option
   } else {
     on_.erase({device, kind});
   }
+  any_ = !on_.empty();
 }
 
 Result<void> Faults::set_named(const Rig& rig, const std::string& device, std::string_view fault, bool on,
@@ -149,6 +150,7 @@ void Faults::clear() {
   const std::lock_guard lock(mutex_);
   ++revision_;
   on_.clear();
+  any_ = false;
   stuck_at_lx_.clear();
 }
 
@@ -160,6 +162,7 @@ std::vector<FaultOn> Faults::all_on() const {
 }
 
 std::optional<double> Faults::find(const std::string& device, FaultKind kind) const {
+  if (!any_) return std::nullopt;
   const std::lock_guard lock(mutex_);
   const auto found = on_.find({device, kind});
   return found == on_.end() ? std::nullopt : std::optional(found->second);
@@ -205,6 +208,7 @@ Disturbance Faults::disturbance(std::span<const std::string> devices, std::uint6
 }
 
 double Faults::shown_lx(const std::string& meter, double honest_lx) {
+  if (!any_) return honest_lx;
   const std::lock_guard lock(mutex_);
   double shown_lx = honest_lx;
   if (const auto factor = on_.find({meter, FaultKind::lying}); factor != on_.end()) shown_lx *= factor->second;

@@ -126,6 +126,8 @@ class Faults {
   /// Changes with each switch, so a frequent reader need not query every device.
   [[nodiscard]] std::uint64_t revision() const { return revision_; }
 
+  /// Whether any is on: without one, nothing need be asked for each device.
+  [[nodiscard]] bool any() const { return any_; }
   /// All that are on, by device.
   [[nodiscard]] std::vector<FaultOn> all_on() const;
   /// Its value if it is on.
@@ -142,6 +144,7 @@ class Faults {
   mutable std::mutex mutex_;
   std::uint64_t seed_;
   std::atomic<std::uint64_t> revision_{1};
+  std::atomic<bool> any_{false};
   std::map<std::pair<std::string, FaultKind>, double> on_;
   std::map<std::string, double> stuck_at_lx_;
 };
