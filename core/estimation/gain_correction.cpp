@@ -29,8 +29,9 @@ constexpr double kCaution = 0.5;
 constexpr double kMissed = 0.05, kDrawnAway = 2;
 /// Slightly above 1, so that rounding does not call for a second cut.
 constexpr double kAbove = 1 + 1e-12;
-/// A limit that binds may leave this share unused; more is worth another solve.
-constexpr double kRoomLeft = 0.005;
+/// A limit that binds may leave this share unused; more is worth another solve. One that is exceeded by less than
+/// kRoomOver is not: all light that is too much is dimmed away at the end.
+constexpr double kRoomLeft = 0.005, kRoomOver = 0.001;
 
 /// Where the lights of `set` alone exceed a limit, those in `dims` all dim by the same share. If that does not suffice,
 /// the brightest at that point go off.
@@ -114,6 +115,7 @@ Correction GainEstimator::correct(std::span<const double> present, Time now, For
   problem.max_level.resize(lights);
   problem.near_level.resize(lights);
   std::vector<Index> on_or_off, held;
+  std::vector<std::size_t> brightest_of;  // per light, the fixture whose name it has
   for (Index k = 0; k < lights; ++k) {
     Index brightest = 0;
     per_light.col(k).maxCoeff(&brightest);  // its share is 1
@@ -121,7 +123,7 @@ Correction GainEstimator::correct(std::span<const double> present, Time now, For
     problem.max_level[k] = std::numeric_limits<double>::infinity();
     for (Index j = 0; j < fixtures(); ++j)
       if (per_light(j, k) > 0) problem.max_level[k] = std::min(problem.max_level[k], max_level_[j] / per_light(j, k));
-    problem.light_name.push_back(fixture_names_[static_cast<std::size_t>(brightest)]);
+    brightest_of.push_back(static_cast<std::size_t>(brightest));
     bool by_hand = false;
     for (Index j = 0; j < fixtures(); ++j)
       by_hand = by_hand || (per_light(j, k) > 0 && held_[static_cast<std::size_t>(j)] != 0);
@@ -142,7 +144,6 @@ Correction GainEstimator::correct(std::span<const double> present, Time now, For
     problem.lux_per_level.row(i) = lux.head(fixtures()) * per_light;
     if (lux.size() > fixtures()) problem.fixed_lx[i] = lux[fixtures()];
     problem.weight[i] = asked.weight[i] * (rows.back().luxmeter ? kMeteredWeight : 1);
-    problem.point_name.push_back(points_[static_cast<std::size_t>(i)].name);
   }
   for (Index j = 0; j < lights && points > 0; ++j) {
     const double brightest = problem.lux_per_level.col(j).head(points).maxCoeff();
@@ -209,17 +210,23 @@ Correction GainEstimator::correct(std::span<const double> present, Time now, For
   };
   // Limits hold for the worst case, which depends on the new levels: solve, check, set anew, solve again.
   VectorXd max_lx = problem.max_lx;
+  VectorXd day_lx = VectorXd::Zero(points);  // of daylight and lost lamps, at most
+  for (Index i = 0; i < points; ++i)
+    if (points_[static_cast<std::size_t>(i)].max_lx)
+      day_lx[i] = max_without_fixtures(rows[static_cast<std::size_t>(i)], now);
+  problem.start_level = problem.near_level;
   for (int round = 0; round < kLimitRounds; ++round) {
     bool again = round == 0;
+    const VectorXd at_level = vector_of(list_of(per_light * level));
     for (Index i = 0; i < points; ++i) {
       const auto& limit_lx = points_[static_cast<std::size_t>(i)].max_lx;
       if (!limit_lx) continue;
       const Row& row = rows[static_cast<std::size_t>(i)];
-      const double day_lx = max_without_fixtures(row, now), room = std::max(0.0, *limit_lx - day_lx);
+      const double room = std::max(0.0, *limit_lx - day_lx[i]);
       const double lux = lux_per_level.row(i).dot(level);
-      const double most = max_lux(row, vector_of(list_of(per_light * level)), now) - day_lx;
+      const double most = max_lux(row, at_level, now) - day_lx[i];
       const bool binds = round > 0 && daylight_lx[i] + lux > (1 - kRoomLeft) * problem.max_lx[i];
-      again = again || most > room || (binds && most < (1 - kRoomLeft) * room);
+      again = again || most > room * (1 + kRoomOver) || (binds && most < (1 - kRoomLeft) * room);
       max_lx[i] = daylight_lx[i] + (lux > 0 && most > 0 ? room * std::min(1.0, lux / most) : room / local_);
     }
     if (round > 0 && give_way()) again = true;
@@ -232,9 +239,12 @@ Correction GainEstimator::correct(std::span<const double> present, Time now, For
     const auto solution = solve_emittance(problem);
     if (!solution) break;
     level = solution->level + set;
+    problem.start_level = solution->level;
   }
   if (what != For::drift) {
     problem.explained = true;
+    for (const std::size_t fixture : brightest_of) problem.light_name.push_back(fixture_names_[fixture]);
+    for (const Point& point : points_) problem.point_name.push_back(point.name);
     explain(problem, lux_per_level, on_or_off, held, set, rows, correction);
   }
   correction.level = within_limits(list_of((per_light * level).cwiseMin(max_level_)), now);

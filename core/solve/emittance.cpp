@@ -76,6 +76,9 @@ std::optional<std::string> complaint(const EmittanceProblem& p) {
   if (auto text = entries(p.weight, "weight")) return text;
   if (auto text = entries(p.max_level, "max_level")) return text;
   if (auto text = entries(p.near_level, "near_level")) return text;
+  if (p.start_level.size() != 0 && p.start_level.size() != lights)
+    return size("start_level", p.start_level.size(), lights);
+  if (auto text = entries(p.start_level, "start_level")) return text;
   if (p.watts.size() != lights) return size("watts", p.watts.size(), lights);
   if (auto text = entries(p.watts, "watts")) return text;
   if (!(p.max_watts >= 0)) return fmt::format("a limit of {:g} W", p.max_watts);
@@ -172,6 +175,7 @@ ScaledProblem scaled(const EmittanceProblem& p) {
   q.f.head(rows) = s.target;
   q.f.tail(lights) = kTie * p.near_level.cwiseProduct(s.unit);
   q.upper = p.max_level.cwiseProduct(s.unit);
+  if (p.start_level.size() > 0) q.start = p.start_level.cwiseProduct(s.unit);
   q.G.resize(limits + (power_limited(p) ? 1 : 0), lights);
   q.slack.resize(q.G.rows());
   s.rounding.resize(q.G.rows());

@@ -38,6 +38,9 @@ struct EmittanceProblem {
   /// Per light: it is either off or at max_level (finite), as on a relay; empty = all dim.
   std::vector<bool> switched{};
   std::vector<std::string> point_name, light_name;  ///< for the reasons; empty = "point 3", counted from 0
+  /// Levels near the answer, as of a problem that differs a little. The answer is the same up to rounding, sooner; empty
+  /// = from dark.
+  Eigen::VectorXd start_level{};
   bool explained = true;  ///< false: no reasons. They take up to four more solves where a goal is missed
 };
 

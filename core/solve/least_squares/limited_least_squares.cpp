@@ -17,6 +17,23 @@ using Eigen::VectorXd;
 /// From this many unknowns on, changing many constraints at a time is faster (`luxrig bench nnls --only levels`).
 constexpr Index kMany = 200;
 
+/// A row of a start that uses more of its slack than this may bind at the optimum.
+constexpr double kNearlyBinds = 0.99;
+
+/// Which constraints bind at the optimum, as the start has it.
+LimitedLeastSquaresResult guess_of_start(const LimitedLeastSquares& p) {
+  LimitedLeastSquaresResult guess;
+  guess.z = p.start.cwiseMax(0.0).cwiseMin(p.upper);
+  guess.state.assign(static_cast<std::size_t>(guess.z.size()), BoundState::free);
+  for (Index j = 0; j < guess.z.size(); ++j)
+    if (guess.z[j] == 0 || guess.z[j] == p.upper[j])
+      guess.state[static_cast<std::size_t>(j)] = guess.z[j] == 0 ? BoundState::lower : BoundState::upper;
+  const VectorXd used = p.G * guess.z;
+  for (Index i = 0; i < used.size(); ++i)
+    if (used[i] > 0 && used[i] > kNearlyBinds * p.slack[i]) guess.working_rows.push_back(i);
+  return guess;
+}
+
 }  // namespace
 
 std::vector<Index> free_variables(const std::vector<BoundState>& state) {
@@ -90,6 +107,8 @@ LimitedLeastSquaresResult solve_limited_least_squares(const LimitedLeastSquares&
   }
   if (problem.E.cols() >= kMany)
     if (auto result = solve_by_multipliers(problem, stop)) return std::move(*result);
+  if (problem.start.size() == problem.E.cols() && problem.start.allFinite())
+    if (LimitedLeastSquaresResult at = guess_of_start(problem); settle_active_set(problem, at, stop)) return at;
   return solve_by_active_set(problem, stop);
 }
 

@@ -16,6 +16,9 @@ struct LimitedLeastSquares {
   Eigen::VectorXd upper;  ///< ≥ 0, may be +inf
   Eigen::MatrixXd G;      ///< rows of norm about 1
   Eigen::VectorXd slack;  ///< ≥ 0: upper limit of G z
+  /// z near the optimum, as of a problem that differs a little. What binds there is tried first, all at once: the
+  /// optimum is the same up to rounding, sooner. Need not be feasible; empty = none.
+  Eigen::VectorXd start{};
 };
 
 enum class BoundState : char { free, lower, upper };
