@@ -8,8 +8,8 @@
 namespace luxrig {
 namespace {
 
-/// A show is stepped at 50 Hz, and at half the pace of its meters while its light stands still.
-constexpr Duration kStep = std::chrono::milliseconds(20), kStillStep = std::chrono::milliseconds(100);
+/// A show is stepped at 50 Hz while its light fades, and at the pace of its meters while it stands still.
+constexpr Duration kStep = std::chrono::milliseconds(20), kStillStep = std::chrono::milliseconds(200);
 /// The slowest meter's latency, and a sample of it.
 constexpr Duration kSlowestMeter = std::chrono::milliseconds(2300);
 
@@ -62,7 +62,7 @@ void HeldRig::wake() {
 
 void HeldRig::tick() {
   now_ += sim::kTick;
-  const bool still = show_.phase() == Phase::holding && show_.program().done(now_);
+  const bool still = show_.program().done(now_);
   if (now_ - stepped_ < (still ? kStillStep : kStep)) return;
   stepped_ = now_;
   if (auto readings = (reads_knocked_ ? *knocked_ : devices_).read(now_))

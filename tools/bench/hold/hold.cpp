@@ -11,6 +11,7 @@
 #include <random>
 
 #include "core/output/dimming.h"
+#include "core/parallel.h"
 #include "core/rig/rig_file.h"
 #include "core/tasks/light.h"
 #include "core/tasks/scene_builder.h"
@@ -212,39 +213,56 @@ std::vector<BenchRow> named_faults(const Session& session, const LightModel& mod
   return rows;
 }
 
-/// Hours of a show in which nothing fails.
+/// Alarms of a show in which nothing fails.
+struct QuietShow {
+  double hours = 0;
+  int corrections = 0;
+  std::vector<std::string> alarms{};  ///< each when it began
+};
+
+QuietShow quiet_show(const Session& session, const LightModel& model, std::uint64_t seed, double hours) {
+  QuietShow show;
+  sim::Deviations real = sim::Deviations::real();
+  real.seed = seed;
+  real.visits_per_hour = 0;
+  auto world = sim::World::make(session.rig, real, kHoldError);
+  if (!world) return show;
+  HeldRig rig(session.rig, model, std::move(*world));
+  rig.apply(std::vector<double>(session.rig.fixtures.size(), 0.4));
+  rig.run(kSettledAfter_s);
+  std::string last;
+  for (int minute = 0; minute < 60 * hours; ++minute) {
+    rig.run(60);
+    std::string now;
+    for (const Alarm& alarm : rig.status().alarms)
+      if (alarm.text.find("readings: ") != std::string::npos) now = alarm.text;
+    if (!now.empty() && last.empty())
+      show.alarms.push_back(fmt::format("seed {}, after {} min: {}", seed, minute, now));
+    last = now;
+    show.hours += 1 / 60.0;
+  }
+  show.corrections = rig.corrections();
+  return show;
+}
+
 BenchRow quiet_hours(const Session& session, const LightModel& model, const BenchOptions& options) {
   const int seeds = options.seeds.value_or(options.quick ? 2 : 10);
   const double hours = options.seconds ? *options.seconds / 3600 : options.quick ? 0.5 : 100;
   const auto started = Clock::now();
-  int alarms = 0;
-  double quiet_h = 0;
-  for (int s = 0; s < seeds; ++s) {
-    sim::Deviations real = sim::Deviations::real();
-    real.seed = static_cast<std::uint64_t>(options.first_seed + s);
-    real.visits_per_hour = 0;
-    auto world = sim::World::make(session.rig, real, kHoldError);
-    if (!world) continue;
-    HeldRig rig(session.rig, model, std::move(*world));
-    rig.apply(std::vector<double>(session.rig.fixtures.size(), 0.4));
-    rig.run(kSettledAfter_s);
-    std::string last;
-    for (int minute = 0; minute < 60 * hours; ++minute) {
-      rig.run(60);
-      std::string now;
-      for (const Alarm& alarm : rig.status().alarms)
-        if (alarm.text.find("readings: ") != std::string::npos) now = alarm.text;
-      if (!now.empty() && last.empty()) {
-        ++alarms;
-        std::fprintf(stderr, "seed %d, after %d min: %s\n", options.first_seed + s, minute, now.c_str());
-      }
-      last = now;
-      quiet_h += 1 / 60.0;
-    }
+  std::vector<QuietShow> shows(static_cast<std::size_t>(seeds));
+  parallel_for(shows.size(), options.threads, [&](std::size_t s) {
+    shows[s] = quiet_show(session, model, static_cast<std::uint64_t>(options.first_seed) + s, hours);
+  });
+  QuietShow all;
+  for (const QuietShow& show : shows) {
+    all.hours += show.hours;
+    all.corrections += show.corrections;
+    all.alarms.insert(all.alarms.end(), show.alarms.begin(), show.alarms.end());
   }
-  BenchRow row = held_row("quiet hours", "readings alone", alarms, 0);
+  for (const std::string& alarm : all.alarms) std::fprintf(stderr, "%s\n", alarm.c_str());
+  BenchRow row = held_row("quiet hours", "readings alone", static_cast<double>(all.alarms.size()), 0);
   row.seconds = std::chrono::duration<double>(Clock::now() - started).count();
-  row.further = {{"cases", fmt::format("{:.0f} h", quiet_h)}};
+  row.further = {{"cases", fmt::format("{:.0f} h", all.hours)}, {"corrections", fmt::format("{}", all.corrections)}};
   return row;
 }
 
