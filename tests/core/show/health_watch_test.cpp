@@ -54,6 +54,41 @@ TEST(HealthWatch, RaisesNoAlarmWhileAllMetersAndDevicesAreHealthy) {
   }
 }
 
+TEST(HealthWatch, FollowsReportsWhoseDevicesComeGoAndChangePlaces) {
+  HealthWatch watch(small_rig());
+  Health well = faulted("left", 0), stranger = faulted("stranger", 0), silent = faulted("meter-2", 0);
+  well.life = Life::active;
+  well.detail.clear();
+  const auto after = [&](std::vector<Health> report, double from_s) {
+    watch.report(report);
+    for (double t = from_s; t < from_s + 1; t += 0.1) {
+      watch.heard(0, at(t));
+      watch.heard(1, at(t));
+      for (Health& health : report) health.received += health.life == Life::active;
+      watch.report(report);
+      watch.step(at(t));
+    }
+    std::vector<std::string> devices;
+    for (const Alarm& alarm : watch.alarms()) devices.push_back(alarm.device);
+    return devices;
+  };
+  using Devices = std::vector<std::string>;
+  EXPECT_EQ(after({well}, 0), Devices{});
+  EXPECT_EQ(after({well, stranger, silent}, 1), (Devices{"stranger", "meter-2"}));
+  EXPECT_TRUE(watch.all_lost());
+  EXPECT_TRUE(watch.meter_lost(1));
+  stranger.life = Life::active;
+  stranger.detail.clear();
+  EXPECT_EQ(after({silent, well, stranger}, 20), Devices{"meter-2"});
+  EXPECT_FALSE(watch.all_lost());
+  EXPECT_EQ(after({silent}, 40), Devices{"meter-2"});
+  EXPECT_EQ(after({}, 60), Devices{});
+  EXPECT_FALSE(watch.meter_lost(1));
+  EXPECT_EQ(after({stranger, faulted("left", 80)}, 80), Devices{"left"});
+  EXPECT_TRUE(watch.lamp_lost(0));
+  EXPECT_FALSE(watch.lamp_lost(1));
+}
+
 TEST(HealthWatch, NamesLostDevicesAsTheCauseNotOtherWarnings) {
   HealthWatch watch(small_rig());
   EXPECT_EQ(watch.cause(true), "");

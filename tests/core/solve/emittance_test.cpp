@@ -397,6 +397,11 @@ TEST(Emittance, RefusesInvalidInputAndNamesThePoint) {
   ASSERT_FALSE(solution);
   EXPECT_EQ(solution.error().cause, Cause::invalid);
   EXPECT_EQ(solution.error().detail, "point 'drawing': the limit of 20 lx is below the 30 lx that are there anyway");
+  p = two_points_one_light();
+  p.start_level = VectorXd::Ones(2);
+  solution = solve_emittance(p);
+  ASSERT_FALSE(solution);
+  EXPECT_EQ(solution.error().detail, "start_level has 2 entries, 1 are needed");
   for (const double bad : {-1.0, kNone, kInf}) {
     p = two_points_one_light();
     p.lux_per_level(1, 0) = bad;

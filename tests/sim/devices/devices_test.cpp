@@ -83,6 +83,21 @@ TEST(SimulatedLuxmeter, FollowsAStepWithItsLag) {
   EXPECT_EQ(meter.sample(), 5u);  // five a second
 }
 
+TEST(SimulatedLuxmeter, FollowsTheSameInStepsOfAnyLength) {
+  MeterTruth truth;
+  truth.lag_s = 0.15;
+  truth.ticks_per_sample = 1;
+  truth.lux_per_count = 1e-9;
+  LuxmeterDevice meter(truth);
+  double at_s = 0;
+  std::uint64_t tick = 0;
+  for (const double step_s : {0.01, 0.03, 0.03, 0.01, 0.2, 0.01}) {
+    at_s += step_s;
+    meter.step(500, step_s, ++tick);
+    EXPECT_NEAR(meter.reading_lx(), 500 * (1 - std::exp(-at_s / 0.15)), 1e-6);
+  }
+}
+
 TEST(SimulatedLuxmeter, HoldsItsReadingBetweenSamples) {
   LuxmeterDevice meter(MeterTruth{});
   for (std::uint64_t tick = 1; tick <= 20; ++tick) meter.step(100, 0.01, tick);

@@ -124,6 +124,45 @@ TEST(LimitedLeastSquares, ManyConstraintsAtATimeMatchOneAtATime) {
               worst, worst_tie);
 }
 
+TEST(LimitedLeastSquares, AStartChangesNothingButTheNumberOfSteps) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> uniform;
+  int steps = 0, steps_from_dark = 0;
+  for (int seed = 0; seed < 400; ++seed) {
+    const LimitedLeastSquares p = random_lights(seed, 1 + 7 * seed % 40, 1 + 13 * seed % 60);
+    const LimitedLeastSquaresResult from_dark = solve_limited_least_squares(p, {});
+    ASSERT_TRUE(from_dark.converged) << seed;
+    // The optimum of goals and limits that differ by up to 3 %.
+    LimitedLeastSquares before = p, nearby = p, anywhere = p;
+    for (double& goal : before.f) goal *= 0.97 + 0.06 * uniform(random);
+    for (double& limit : before.slack) limit *= 0.97 + 0.06 * uniform(random);
+    nearby.start = solve_limited_least_squares(before, {}).z;
+    // Out of bounds, and beyond limits.
+    anywhere.start.resize(p.E.cols());
+    for (double& level : anywhere.start) level = 4 * uniform(random) - 1;
+    for (const LimitedLeastSquares& started : {nearby, anywhere}) {
+      const LimitedLeastSquaresResult at = solve_limited_least_squares(started, {});
+      ASSERT_TRUE(at.converged) << seed;
+      EXPECT_LT(distance_from_optimum(p, at.z), 1e-9) << seed;
+      EXPECT_NEAR(residual_norm_of(p, at.z), residual_norm_of(p, from_dark.z), 1e-10) << seed;
+      EXPECT_LT((at.z - from_dark.z).cwiseAbs().maxCoeff(), 1e-3) << seed;  // by the tie term, as above
+    }
+    steps += solve_limited_least_squares(nearby, {}).iterations;
+    steps_from_dark += from_dark.iterations;
+  }
+  EXPECT_LT(4 * steps, 3 * steps_from_dark);
+  std::printf("%d steps from a start near the optimum, %d from dark\n", steps, steps_from_dark);
+}
+
+TEST(LimitedLeastSquares, AStartOfAnotherSizeOrWithoutNumbersIsNone) {
+  LimitedLeastSquares p = random_lights(1, 12, 20);
+  const VectorXd expected = solve_limited_least_squares(p, {}).z;
+  p.start = VectorXd::Ones(5);
+  EXPECT_EQ(solve_limited_least_squares(p, {}).z, expected);
+  p.start = VectorXd::Constant(12, std::numeric_limits<double>::quiet_NaN());
+  EXPECT_EQ(solve_limited_least_squares(p, {}).z, expected);
+}
+
 TEST(LimitedLeastSquares, TwoHundredLightsAtThreeHundredPointsMatchTheReference) {
   for (int seed = 0; seed < 6; ++seed) {
     const LimitedLeastSquares p = random_lights(seed, 200, 300);
