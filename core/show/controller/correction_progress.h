@@ -20,6 +20,7 @@ struct CorrectionProgress {
   int round = 0;
   bool converged = false;
   Time corrected_at{};           ///< when the last correction was decided
+  Time sampled_at{};             ///< of the last sample while holding
   int drifted = 0;               ///< samples in a row, while holding, that ask for a correction
   std::vector<double> aimed_lx;  ///< per point: reachable by the last correction; empty before
   std::vector<std::string> why;  ///< per point: why its goal is not met; empty before the first

@@ -145,9 +145,9 @@ void ShowController::State::watch_drift(Time now) {
   if (readings.sampled_at() != now) return;
   progress.converged = all_metered_goals_arrived();
   if (solving.running()) return;
-  // Samples too long before the next correction decide nothing.
-  if (progress.breaches.empty() && now - progress.corrected_at < kDriftCorrectionEvery - kDriftSamples * kSampleEvery)
-    return;
+  // Of the samples before the next correction, only the last ones decide.
+  const Duration apart = now - std::exchange(progress.sampled_at, now);
+  if (progress.breaches.empty() && now - progress.corrected_at + kDriftSamples * apart < kDriftCorrectionEvery) return;
   solve(now, progress.breaches.empty() ? SolveBeside::For::drift : SolveBeside::For::round);
 }
 
