@@ -2,26 +2,44 @@
 /// Why luxmeters read something else than before at the same levels: which single cause explains all of them, and
 /// whether any other would, too.
 ///
-/// Each cause predicts how the reading of every meter changes. A lamp that loses light takes from each meter what it gave
-/// there; a covered meter changes alone; a head that was knocked takes from some meters and gives to others. A cause is
-/// found only if the changes are far beyond noise, it explains them, and no other cause explains them nearly as well.
-/// Causes are compared by their evidence: χ², and what each thing that could have been anything costs.
+/// Each cause predicts how the reading of every meter changes, and how the meters follow when a lamp is dimmed for a
+/// moment. A lamp that loses light takes from each meter what it gave there, and a dead one changes nothing when it is
+/// dimmed. A covered meter changes alone, and follows by what it still sees. A head that was knocked takes from some
+/// meters and gives to others. A cause is found only if the changes are far beyond noise, it explains them, and no other
+/// cause explains them nearly as well. Causes are compared by their evidence, as -2 times its logarithm: the probability
+/// of what was read, over all that is not known (each lamp's light at each meter, its curve, the share that is left).
 ///
 /// Source: D. J. C. MacKay, Bayesian Interpolation, Neural Computation 4 (1992): evidence and Occam factors.
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <functional>
+#include <optional>
+#include <span>
 #include <vector>
 
 namespace luxrig {
 
+/// A lamp that was dimmed for a moment to see which meters follow.
+struct LampDip {
+  std::size_t fixture = 0;
+  double level_share = 1;     ///< of its level that was left, as sent
+  Eigen::VectorXd change_lx;  ///< per luxmeter: reading less that beside the dip; NaN = not read
+  Eigen::VectorXd error_lx;   ///< standard error by noise, > 0
+};
+
 /// At one set of levels. Vectors: an entry per luxmeter; NaN in now_lx = not read.
 struct LightChange {
   Eigen::VectorXd before_lx, now_lx;
-  Eigen::VectorXd error_lx;    ///< standard error of the difference by noise, > 0
-  Eigen::MatrixXd of_fixture;  ///< luxmeters × fixtures: light of each in before_lx [lx]
-  Eigen::VectorXd daylight;    ///< in before_lx; empty = none
-  Eigen::VectorXd level;       ///< per fixture
+  Eigen::VectorXd error_lx;         ///< standard error of the difference by noise, > 0
+  Eigen::MatrixXd of_fixture;       ///< luxmeters × fixtures: light of each in before_lx [lx]
+  Eigen::VectorXd daylight;         ///< in before_lx; empty = none
+  Eigen::VectorXd level;            ///< per fixture
+  Eigen::MatrixXd fixture_error{};  ///< standard error of of_fixture [lx]; empty = kLampShare of each
+  Eigen::VectorXd curve_error{};    ///< per fixture: of its light's exponent over its level, a share; empty = kCurve
+  /// Level that the first fixture has with what is sent to the second; empty = the level of the second.
+  std::function<double(std::size_t, std::size_t)> level_with_drive_of{};
+  std::vector<LampDip> dips{};  ///< since the change
 };
 
 struct ChangeCause {
@@ -39,15 +57,25 @@ struct ChangeCause {
   Kind kind = Kind::none;
   std::vector<std::size_t> who{};  ///< fixtures, or luxmeters if the kind is of meters
   double share = 1;   ///< light of the lamp, of all or of the day over that before; reading over before of a meter
-  double margin = 0;  ///< by how much it is better than the next cause: 12 is a likelihood ratio of 400
+  double margin = 0;  ///< by how much it is better than the next cause: 10 is a likelihood ratio of 150
 };
 
-/// The causes that explain the change, best first: one if it is clear. Several if they explain it about as well (at most
-/// kMostCauses). Kind::unclear alone if none explains it, or too many do.
+/// The causes that explain the change, best first: one if it is clear. Several if they explain it about as well (at
+/// most kMostCauses). Kind::unclear alone if none explains it, or too many do.
 [[nodiscard]] std::vector<ChangeCause> causes_of(const LightChange& change);
+/// All of them, however many; empty if none explains it.
+[[nodiscard]] std::vector<ChangeCause> likely_causes(const LightChange& change);
+
+/// Which lamp to dim to this share of its level, so that the meters tell these causes apart; nullopt: none would.
+/// may: per fixture, 1 = it may be dimmed. dip_error_lx: per luxmeter, as LampDip::error_lx will be.
+[[nodiscard]] std::optional<std::size_t> lamp_that_tells(const LightChange& change, std::span<const ChangeCause> causes,
+                                                         std::span<const std::uint8_t> may, double level_share,
+                                                         const Eigen::VectorXd& dip_error_lx);
 
 inline constexpr std::size_t kMostCauses = 3;
 /// How well it is known what a lamp gives at a meter, as a share of that.
 inline constexpr double kLampShare = 0.15;
+/// How well the exponent of a dimmer's curve is known that nobody measured, as a share.
+inline constexpr double kCurve = 0.05;
 
 }  // namespace luxrig

@@ -421,6 +421,11 @@ double GainEstimator::lux_per_level(std::size_t point, std::size_t fixture) cons
   return row.lux_per_level[j] * row.factor[j];
 }
 
+Prediction GainEstimator::lux_per_level_at_meter(std::size_t luxmeter, std::size_t fixture) const {
+  const auto i = static_cast<Index>(luxmeter), j = static_cast<Index>(fixture);
+  return {meter_(i, j) * factor_(i, j), meter_(i, j) * factor_error_(i, j)};
+}
+
 void GainEstimator::forget(std::size_t luxmeter) {
   std::erase_if(evidence_, [&](const Evidence& e) { return e.luxmeter == luxmeter; });
   meters_.at(luxmeter) = Meter{};

@@ -130,6 +130,9 @@ class GainEstimator {
   /// Estimated light of the fixture at a point at full level.
   [[nodiscard]] double lux_per_level(std::size_t point, std::size_t fixture) const;
 
+  /// The same at a meter, with its standard error.
+  [[nodiscard]] Prediction lux_per_level_at_meter(std::size_t luxmeter, std::size_t fixture) const;
+
   /// Readings of all meters over the model as stated (rated lamps, nothing learned): the median, as a logarithm. Its
   /// standard error is from everything stated: lamps, positions, curves, transport, tolerances.
   struct CommonScale {

@@ -1,9 +1,11 @@
 #pragma once
 /// Faults that no device reports, found by readings that do not fit together: a lamp that went dark, a meter that is
-/// covered, two that were exchanged, a lamp that was knocked (core/estimation/change_cause.h). It only says what it finds,
-/// with the evidence; it changes no light and no estimate.
+/// covered, two that were exchanged, a lamp that was knocked (core/estimation/change_cause.h). It says what it finds,
+/// with the evidence. Where several causes explain the readings, it names a lamp to dim for a moment; the show does
+/// that, and which meters follow decides.
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,23 +14,45 @@
 #include "core/estimation/change_cause.h"
 #include "core/estimation/gain_estimator.h"
 #include "core/show/show_controller.h"
+#include "core/show/usual_reading.h"
 
 namespace luxrig {
 
 class FaultWatch {
  public:
+  /// Of its level, what a lamp keeps that is dimmed to see which meters follow; and the second time.
+  static constexpr double kDippedTo = 0.8, kDippedAgainTo = 0.5;
+
   explicit FaultWatch(const Rig& rig);
 
   /// The light changes until `settled`. What meters show from then on counts, once the slowest has followed.
   void light_changes(Time settled);
   /// Every reading, believed or not.
   void hear(const LuxReading& reading);
-  /// Call it under steady light, as often as you like. levels: per fixture.
+  /// Call it under steady light, as often as you like. levels: per fixture, as they are out; of a lamp that is dimmed
+  /// for us, as beside the dip.
   void look(Time now, const GainEstimator& estimator, const std::vector<double>& levels);
   /// Adds the alarm, if something is found.
   void tell(ShowStatus& status) const;
   /// All readings so far are of another light, another rig, or are taken as right.
   void forget();
+
+  /// Readings are not as usual, and it is not known yet why: corrections should wait.
+  [[nodiscard]] bool examines(Time now) const;
+
+  struct Dip {
+    std::size_t fixture = 0;
+    double level_share = 1;  ///< of its level that is left
+  };
+  /// The lamp to dim now, so that the causes are told apart; nullopt: none, or not now. may: per fixture, 1 = it may be
+  /// dimmed.
+  [[nodiscard]] std::optional<Dip> lamp_to_dip(Time now, std::span<const std::uint8_t> may) const;
+  /// It is being dimmed. Call light_changes(), too.
+  void dip_begins(const Dip& dip);
+  /// Enough has been read under the dip.
+  [[nodiscard]] bool dip_is_read() const;
+  /// It is over. What was read counts if it is enough.
+  void dip_ends();
 
   struct Finding {
     std::vector<ChangeCause> causes;  ///< one, or those between which the meters cannot decide
@@ -38,45 +62,45 @@ class FaultWatch {
   [[nodiscard]] const std::optional<Finding>& found() const { return found_; }
 
  private:
-  /// Reading over what the model states, while nothing is wrong.
-  struct Usual {
-    double ratio = 0, variance = 0;
-    int samples = 0;
-    std::vector<double> recent{};  ///< the last few ratios, oldest first
-    bool fresh = false;            ///< the last of them is of this look
-    double since_sum = 0;          ///< of ratios since something changed
-    int since_samples = 0;
-    void learn(double now);
-    [[nodiscard]] bool known() const;
-    [[nodiscard]] double deviation() const;
-    [[nodiscard]] bool differs() const;
-  };
-  /// Means of what was heard since the last look, and whether any is not usual.
-  [[nodiscard]] bool take_heard(const GainEstimator& estimator, const std::vector<double>& levels);
-  /// Error of a meter's usual reading under these levels, as lamps have changed since it was learnt [lx].
-  [[nodiscard]] double error_of_levels(const GainEstimator& estimator, std::size_t luxmeter,
-                                       const std::vector<double>& levels) const;
-  [[nodiscard]] LightChange change(const GainEstimator& estimator, const std::vector<double>& levels) const;
-  void judge(Time now, const LightChange& change);
-  [[nodiscard]] std::string words(const ChangeCause& cause) const;
-  [[nodiscard]] std::string evidence(const LightChange& change) const;
-
-  std::vector<std::string> fixtures_, meters_;
-  std::vector<Usual> usual_;       ///< per luxmeter
-  std::vector<double> learnt_at_;  ///< levels when it began to be learnt
-  std::vector<double> last_levels_;
   struct Heard {
     double sum_lx = 0;
     int count = 0;
     Time last{};
   };
+  /// Readings since the last look over what the model states, per luxmeter; none = nothing was heard, or it is dark.
+  [[nodiscard]] std::vector<std::optional<double>> take_heard(const GainEstimator& estimator,
+                                                              const std::vector<double>& levels);
+  /// What is usual is less certain by what the model may be wrong of these changes.
+  void follow_levels(const GainEstimator& estimator, const std::vector<double>& levels);
+  void begin_change(Time now);
+  void listen(Time now, const std::vector<std::optional<double>>& ratio);
+  [[nodiscard]] LightChange change(const GainEstimator& estimator, const std::vector<double>& levels) const;
+  void share_out(const GainEstimator& estimator, std::size_t luxmeter, LightChange& change) const;
+  [[nodiscard]] double noise_lx(std::size_t luxmeter, int samples) const;
+  void judge(Time now);
+  void add_doubt_of_lamps();
+  [[nodiscard]] int meters_that_see(std::size_t fixture) const;
+  [[nodiscard]] std::string words(const ChangeCause& cause) const;
+  [[nodiscard]] std::string evidence() const;
+  [[nodiscard]] std::string of_dips() const;
+
+  std::vector<Fixture> fixtures_;
+  std::vector<std::string> meters_;
+  std::vector<UsualReading> usual_;  ///< per luxmeter
+  std::vector<double> last_levels_;
   std::vector<Heard> heard_;  ///< per luxmeter, since the last look
   Time steady_from_{}, looked_at_{};
   bool changed_ = false;  ///< some meter reads something else than usual
   Time changed_since_{};
-  int quiet_ = 0;                       ///< samples in a row without a difference
-  std::vector<ChangeCause> candidate_;  ///< of the last sample
-  int same_ = 0;                        ///< samples in a row with that
+  int quiet_ = 0;                   ///< samples in a row without a difference
+  std::vector<MeanReading> since_;  ///< per luxmeter: reading over what is usual, since the change
+  LightChange change_;              ///< as of the last look
+  std::vector<ChangeCause> likely_, candidate_;
+  int same_ = 0;                        ///< samples in a row that led to candidate_
+  std::optional<Dip> dip_;              ///< now
+  std::vector<MeanReading> dip_share_;  ///< per luxmeter: reading over what is usual beside it
+  int dip_looks_ = 0;
+  std::vector<LampDip> dips_;  ///< since the change
   std::optional<Finding> found_;
 };
 

@@ -109,6 +109,7 @@ void ShowController::State::fade(Time now, std::vector<double> from, std::vector
   // What is lit now, under the limits so far.
   const std::vector<double> lit =
       program.revision == 0 || program.blackout ? std::vector<double>{} : present_levels(now);
+  drop_dip();
   guard(now, from, to);
   program.excess_lx.resize(0);
   if (!lit.empty()) {
@@ -400,6 +401,7 @@ void ShowController::blackout(Time now, bool on) {
   State& state = *state_;
   now = state.at_least_last(now);
   if (state.program.blackout == on) return;
+  state.drop_dip();
   state.program.blackout = on;
   ++state.program.revision;
   state.progress.converged = false;
@@ -446,6 +448,7 @@ void ShowController::step(Time now) {
   state.take_sample(now);
   state.look_at_failures(now);
   state.take_solved(now);
+  state.step_dip(now);
   state.advance(now);
   state.watch_power(now);
   state.close_bypassed(now);

@@ -27,6 +27,7 @@ void ShowController::State::take_sample(Time now) {
       any_dimmed_for_a_zone(program, now))
     return;  // not the light that was asked for
   look_at_faults(now);
+  if (dipped) return;  // nothing is learnt of a light that lasts for seconds
   if (phase == Phase::measuring ? solving.running() : now - readings.sampled_at() < kSampleEvery) return;
   std::vector<LuxReading> sample;
   for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) {
@@ -67,7 +68,7 @@ void ShowController::State::take_sample(Time now) {
 /// What a device reports itself is known already.
 void ShowController::State::look_at_faults(Time now) {
   if (lost.any() || bypassed.any_lamp()) return faults.forget();
-  faults.look(now, estimator, program.to_level);
+  faults.look(now, estimator, undipped_levels(now));
 }
 
 /// Starts solving for the levels that readings and settings by hand require; take_solved() puts them to use.
@@ -145,6 +146,8 @@ void ShowController::State::watch_drift(Time now) {
   if (readings.sampled_at() != now) return;
   progress.converged = all_metered_goals_arrived();
   if (solving.running()) return;
+  // A correction by readings that nobody understands may do harm, and would blur them.
+  if (faults.examines(now) && progress.breaches.empty()) return;
   // Of the samples before the next correction, only the last ones decide.
   const Duration apart = now - std::exchange(progress.sampled_at, now);
   if (progress.breaches.empty() && now - progress.corrected_at + kDriftSamples * apart < kDriftCorrectionEvery) return;

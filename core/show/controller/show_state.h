@@ -127,6 +127,21 @@ struct ShowController::State {
   void fade_to_safe(Time now);
   void take_sample(Time now);
   void look_at_faults(Time now);
+
+  // A lamp dimmed for a moment (show_dips.cpp).
+  struct Dipped {
+    std::size_t fixture = 0;
+    double level = 0;         ///< before, and after
+    bool comes_back = false;  ///< on the way there
+  };
+  std::optional<Dipped> dipped;
+  [[nodiscard]] std::vector<std::uint8_t> may_be_dipped() const;
+  /// Levels that are out, as without a dip.
+  [[nodiscard]] std::vector<double> undipped_levels(Time now) const;
+  void step_dip(Time now);
+  void dip_to(Time now, double level);
+  /// Other light is asked for: the dip is over, wherever it was.
+  void drop_dip();
   void solve(Time now, SolveBeside::For what);
   void take_solved(Time now);
   void drop_solving();

@@ -201,6 +201,91 @@ TEST(ChangeCause, WhereOneMeterAloneSeesALampBothAreNamed) {
   for (const ChangeCause& cause : causes) EXPECT_EQ(cause.who, std::vector<std::size_t>{1});
 }
 
+/// Two lamps over two meters and a third that sees both; all as before but for the change and the dips.
+LightChange two_lamps(const MatrixXd& light, const VectorXd& now) {
+  LightChange change;
+  change.of_fixture = light;
+  change.fixture_error = 0.05 * light;
+  change.level = VectorXd::Constant(light.cols(), 0.5);
+  change.before_lx = light.rowwise().sum();
+  change.now_lx = now;
+  change.error_lx = VectorXd::Constant(light.rows(), 0.3);
+  return change;
+}
+
+LampDip dip_of(std::size_t lamp, const VectorXd& change_lx) {
+  return {lamp, 0.8, change_lx, VectorXd::Constant(change_lx.size(), 0.3)};
+}
+
+TEST(ChangeCause, ADipTellsADeadLampFromACoveredMeter) {
+  const MatrixXd light{{80, 20}, {0.1, 90}};
+  LightChange change = two_lamps(light, VectorXd{{20, 90.1}});
+  const auto either = likely_causes(change);
+  ASSERT_EQ(either.size(), 2u);
+  const std::vector<std::uint8_t> may{1, 1}, may_not{0, 0};
+  EXPECT_EQ(lamp_that_tells(change, either, may, 0.8, change.error_lx), 0u);
+  EXPECT_FALSE(lamp_that_tells(change, either, may_not, 0.8, change.error_lx));
+
+  change.dips = {dip_of(0, VectorXd{{0, 0}})};  // a dead lamp has nothing to lose
+  auto causes = causes_of(change);
+  ASSERT_EQ(causes.size(), 1u);
+  EXPECT_EQ(causes[0].kind, Kind::lamp);
+  EXPECT_NEAR(causes[0].share, 0, 0.1);
+
+  change.dips = {dip_of(0, VectorXd{{-0.2 * 0.2 * 80, -0.02}})};  // a fifth of what the covered meter still sees of it
+  causes = causes_of(change);
+  ASSERT_EQ(causes.size(), 1u);
+  EXPECT_EQ(causes[0].kind, Kind::meter);
+  EXPECT_NEAR(causes[0].share, 0.2, 1e-9);
+}
+
+TEST(ChangeCause, ADipTellsExchangedMetersFromExchangedLamps) {
+  const MatrixXd light{{100, 1}, {1, 80}, {10, 1}};
+  LightChange change = two_lamps(light, VectorXd{{81, 101, 11}});
+  change.level = VectorXd{{0.5, 0.4}};
+  // Meters: the third reads as before, and sees the first lamp dip.
+  change.dips = {dip_of(0, VectorXd{{-0.2, -20, -2}})};
+  const auto meters = causes_of(change);
+  ASSERT_EQ(meters.size(), 1u);
+  EXPECT_EQ(meters[0].kind, Kind::meters_swapped);
+  // Lamps: what is sent to the first dims the second.
+  change.now_lx = VectorXd{{100 * 0.8 + 1.25, 0.8 + 100, 8 + 1.25}};
+  change.dips = {dip_of(0, VectorXd{{-0.25, -20, -0.25}})};
+  const auto lamps = causes_of(change);
+  ASSERT_EQ(lamps.size(), 1u);
+  EXPECT_EQ(lamps[0].kind, Kind::lamps_swapped);
+}
+
+TEST(ChangeCause, NoCauseIsNamedWronglyAfterDips) {
+  Tally tally;
+  for (unsigned seed = 0; seed < kRooms; ++seed) {
+    Room room(seed);
+    MatrixXd light = room.true_;
+    VectorXd seen = VectorXd::Ones(Room::kMeters);
+    const bool of_lamp = seed % 2 == 0;
+    const std::size_t who = room.any(of_lamp ? Room::kLamps : Room::kMeters);
+    if (of_lamp)
+      light.col(static_cast<Index>(who)) *= seed % 4 == 0 ? 0 : 0.5;
+    else
+      seen[static_cast<Index>(who)] = 0.2 + 0.6 * room.uniform();
+    LightChange change = room.change(seen.cwiseProduct(room.readings(light, room.level_)));
+    const std::vector<std::uint8_t> may(Room::kLamps, 1);
+    const VectorXd error = std::sqrt(2) * kNoise * change.before_lx;
+    for (int k = 0; k < 3; ++k) {
+      const auto likely = likely_causes(change);
+      const auto lamp = lamp_that_tells(change, likely, may, 0.8, error);
+      if (!lamp) break;
+      VectorXd dipped = room.level_;
+      dipped[static_cast<Index>(*lamp)] *= 0.8;
+      LampDip dip{*lamp, 0.8, seen.cwiseProduct(room.readings(light, dipped)) - change.now_lx, error};
+      change.dips.push_back(std::move(dip));
+    }
+    tally.count(causes_of(change), of_lamp ? Kind::lamp : Kind::meter, who);
+  }
+  EXPECT_LE(tally.wrong, kRooms / 50);
+  EXPECT_GE(tally.right, 0.9 * kRooms);
+}
+
 TEST(ChangeCause, MetersThatAreNotReadSayNothing) {
   Room room(7);
   VectorXd now = room.readings(room.true_, room.level_);

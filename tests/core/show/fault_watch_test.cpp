@@ -55,6 +55,42 @@ class Gallery {
     }
     return std::nullopt;
   }
+  /// The same by a show that dims lamps for the watch.
+  std::optional<int> run_with_dips(int seconds, const std::function<void(VectorXd&)>& shown = {}) {
+    std::optional<FaultWatch::Dip> dip;
+    const std::vector<std::uint8_t> may(kLamps, 1);
+    for (int k = 0; k < seconds; ++k) {
+      now_ += from_seconds(1);
+      VectorXd level = Eigen::Map<const VectorXd>(level_.data(), kLamps);
+      if (dip) level[static_cast<Index>(dip->fixture)] *= dip->level_share;
+      VectorXd lux = light_ * level;
+      if (shown) shown(lux);
+      for (std::size_t m = 0; m < kMeters; ++m)
+        watch_->hear({m, lux[static_cast<Index>(m)] * (1 + noise_ * normal()), now_});
+      watch_->look(now_, *estimator_, level_);
+      if (dip && watch_->dip_is_read()) {
+        watch_->dip_ends();
+        dip.reset();
+        watch_->light_changes(now_ + from_seconds(1));
+      } else if (!dip && (dip = watch_->lamp_to_dip(now_, may))) {
+        ++dips_;
+        watch_->dip_begins(*dip);
+        watch_->light_changes(now_ + from_seconds(1));
+      }
+      if (watch_->found()) return k + 1;
+    }
+    return std::nullopt;
+  }
+  int dips_ = 0;
+  /// The model knows all light.
+  void model_as_is() {
+    LightModel model;
+    model.meter_lux_per_level = model.point_lux_per_level = light_;
+    estimator_.emplace(rig_, model);
+  }
+  [[nodiscard]] double lux(Index meter) const {
+    return light_.row(meter).dot(Eigen::Map<const VectorXd>(level_.data(), kLamps));
+  }
   [[nodiscard]] std::string found() const { return watch_->found() ? watch_->found()->text : ""; }
   double uniform() { return std::uniform_real_distribution<double>()(random_); }
   double normal() { return std::normal_distribution<double>()(random_); }
@@ -91,6 +127,39 @@ TEST(FaultWatch, NamesALampThatWentDarkWithItsEvidence) {
     named += gallery.found().find("either") == std::string::npos;
   }
   EXPECT_GE(named, 18);
+}
+
+TEST(FaultWatch, DimsTheSuspectToTellADeadLampFromACoveredMeter) {
+  int named = 0;
+  for (unsigned seed = 0; seed < 10; ++seed) {
+    for (const bool dead : {true, false}) {
+      Gallery gallery(seed);
+      // One meter alone sees the lamp.
+      gallery.light_.col(7).setConstant(0.01);
+      gallery.light_(2, 7) = 500;
+      gallery.model_as_is();
+      ASSERT_FALSE(gallery.run_with_dips(60)) << seed;
+      EXPECT_EQ(gallery.dips_, 0);
+      const double left = 1 - 500 * gallery.level_[7] / gallery.lux(2);
+      if (dead) gallery.light_(2, 7) = 0;
+      gallery.run_with_dips(60, [&](VectorXd& lux) { lux[2] *= dead ? 1 : left; });
+      EXPECT_GT(gallery.dips_, 0);
+      EXPECT_NE(gallery.found().find("when lamp \"lamp-7\" was dimmed by 20 %"), std::string::npos) << gallery.found();
+      const bool no_light = gallery.found().find("lamp \"lamp-7\" gives no light") != std::string::npos;
+      named += dead && gallery.found().find("lamp \"lamp-7\" gives no light") == 0;
+      // A dim lamp may be told beside the covered meter: nothing else sees that lamp.
+      if (!dead) EXPECT_TRUE(!no_light && gallery.found().find("luxmeter \"meter-2\"") < 8) << gallery.found();
+    }
+  }
+  EXPECT_GE(named, 9);
+}
+
+TEST(FaultWatch, DimsNothingWhileNothingFails) {
+  for (unsigned seed = 0; seed < 5; ++seed) {
+    Gallery gallery(seed, 0.02);
+    EXPECT_FALSE(gallery.run_with_dips(1800)) << gallery.found();
+    EXPECT_EQ(gallery.dips_, 0) << seed;
+  }
 }
 
 TEST(FaultWatch, NamesACoveredMeterAndForgetsItWhenItIsFree) {

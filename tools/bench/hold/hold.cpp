@@ -33,8 +33,7 @@ constexpr double kSettledAfter_s = 90, kNamedWithin_s = 60;
 constexpr double kKnocked_rad = 0.3;
 
 /// Lamps that a meter would miss: they give it a good part of its light.
-std::vector<std::size_t> seen_lamps(const HeldRig& rig, const LightModel& model) {
-  const std::vector<double> level = rig.levels();
+std::vector<std::size_t> seen_lamps(const std::vector<double>& level, const LightModel& model) {
   std::vector<std::size_t> seen;
   for (std::size_t f = 0; f < level.size(); ++f)
     for (Index m = 0; m < model.meter_lux_per_level.rows(); ++m) {
@@ -73,12 +72,13 @@ class FaultCases {
     HeldRig rig(session_.rig, model_, std::move(*world));
     const std::vector<double> half(session_.rig.fixtures.size(), 0.4);
     rig.apply(half);
+    const std::vector<std::size_t> seen = seen_lamps(half, model_);
+    if (seen.size() < 2) return std::nullopt;
     // Something that will be knocked is driven along from the start.
-    const std::size_t head = random_() % session_.rig.fixtures.size();
+    const std::size_t head = seen[random_() % seen.size()];
     if (kind == "knocked lamp") {
       Rig knocked = session_.rig;
-      Pose& mount = knocked.fixtures[head].world_from_mount;
-      mount.rotation = Eigen::AngleAxisd(kKnocked_rad, Vec3::UnitX()).toRotationMatrix() * mount.rotation;
+      turn_aside(knocked.fixtures[head]);
       auto other = sim::World::make(knocked, real, kHoldError);
       if (!other) return std::nullopt;
       rig.knock(std::move(*other));
@@ -93,8 +93,17 @@ class FaultCases {
   [[nodiscard]] std::string lamp(std::size_t f) const { return "\"" + session_.rig.fixtures[f].name + "\""; }
   [[nodiscard]] std::string meter(std::size_t m) const { return "\"" + session_.rig.luxmeters[m].name + "\""; }
 
+  /// Its beam goes aside, whichever way: a turn about the beam itself would change next to nothing.
+  void turn_aside(Fixture& fixture) {
+    const Vec3 beam = -fixture.world_from_lamp().rotation.col(2);
+    const double way = 2 * kPi * std::uniform_real_distribution<double>()(random_);
+    const Vec3 across = beam.unitOrthogonal(), axis = Eigen::AngleAxisd(way, beam) * across;
+    Pose& mount = fixture.world_from_mount;
+    mount.rotation = Eigen::AngleAxisd(kKnocked_rad, axis).toRotationMatrix() * mount.rotation;
+  }
+
   std::optional<std::vector<std::string>> begin(const std::string& kind, HeldRig& rig, std::size_t head) {
-    const std::vector<std::size_t> seen = seen_lamps(rig, model_);
+    const std::vector<std::size_t> seen = seen_lamps(rig.levels(), model_);
     const std::size_t meters = session_.rig.luxmeters.size();
     if (seen.size() < 2 || meters < 2) return std::nullopt;
     const std::size_t f = seen[random_() % seen.size()], m = random_() % meters;
@@ -131,7 +140,6 @@ class FaultCases {
       };
       return {{lamp(f), lamp(other), "each other's level"}};
     }
-    if (std::find(seen.begin(), seen.end(), head) == seen.end()) return std::nullopt;
     rig.knocked_now();
     return {{lamp(head), "shines elsewhere"}};
   }
@@ -149,8 +157,10 @@ class FaultCases {
       const auto text = found();
       if (!text) continue;
       outcome.said = *text;
+      // The readings behind it name all meters that changed.
+      const std::string cause = text->substr(0, text->find("; readings: "));
       const bool names = std::all_of(said.begin(), said.end(),
-                                     [&](const std::string& part) { return text->find(part) != std::string::npos; });
+                                     [&](const std::string& part) { return cause.find(part) != std::string::npos; });
       const bool alone = text->find("either ") != 0 && text->find("no single fault") == std::string::npos;
       outcome.among = outcome.among || names;
       if (!alone) continue;
