@@ -142,7 +142,7 @@ constexpr const char* kStyle =
     "h1 { font-size: 1.3rem; } h2 { font-size: 1rem; margin: 1.6rem 0 0.4rem; }\n"
     ".wide { overflow-x: auto; } table { border-collapse: collapse; }\n"
     "th, td { padding: 0.15rem 1rem 0.15rem 0; text-align: left; white-space: nowrap; } th { font-weight: 600; }\n"
-    "table.words td:first-child { white-space: normal; }\n"
+    "table.words td:first-child { white-space: normal; min-width: 9rem; }\n"
     "svg { width: 100%; max-width: 44rem; height: auto; } svg.small { max-width: 20rem; }\n"
     "img { display: block; max-width: 100%; height: auto; margin: 0.6rem 0; }\n"
     "summary { cursor: pointer; padding: 0.6rem 0; }\n"

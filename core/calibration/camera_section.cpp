@@ -90,8 +90,14 @@ std::string budget_section(const CalibrationReport& report) {
   return html;
 }
 
+/// To so many digits; what rounds to 0 has no sign.
+double rounded(double value, int digits) {
+  const double scale = std::pow(10, digits);
+  return std::round(value * scale) / scale + 0.0;
+}
+
 std::string row(const char* what, const Known& known, const char* unit, int digits) {
-  return fmt::format("<tr><td>{}</td><td>{:.{}f} ± {:.{}f}{}</td></tr>\n", what, known.value, digits,
+  return fmt::format("<tr><td>{}</td><td>{:.{}f} ± {:.{}f}{}</td></tr>\n", what, rounded(known.value, digits), digits,
                      known.standard_error, digits, unit);
 }
 
@@ -113,7 +119,7 @@ std::string camera_table(const CalibratedCamera& camera) {
                       100 * std::exp(-log_loss));
   std::string parts;
   for (const Known& part : camera.lens_loss)
-    parts += fmt::format("{}{:.2f} ± {:.2f}", parts.empty() ? "" : ", ", part.value, part.standard_error);
+    parts += fmt::format("{}{:.2f} ± {:.2f}", parts.empty() ? "" : ", ", rounded(part.value, 2), part.standard_error);
   html += fmt::format("<tr><td>its lens: a, b, c of e<sup>-(a ρ² + b ρ⁴ + c ρ⁶)</sup></td><td>{}</td></tr>\n", parts);
   const auto percent = [](const Known& share) { return Known{100 * share.value, 100 * share.standard_error}; };
   html += row("stray light over the picture", percent(camera.flare), " %", 1);

@@ -39,7 +39,7 @@ CalibrationReport seen_example() {
   camera.turn_deg = Vec3(0, 0, 1.2);
   camera.fov_deg = {58.25, 0.11};
   camera.distortion = {-0.0123, 0.002};
-  camera.lens_loss = {Known{0.2, 0.02}, Known{0.1, 0.02}, Known{0, 0.01}};
+  camera.lens_loss = {Known{0.2, 0.02}, Known{0.1, 0.02}, Known{-0.001, 0.01}};
   camera.flare = {0.013, 0.004};
   camera.responses = {{"amber <2>", {1.9, 0.1}}};
   report.found.cameras = {camera};
