@@ -28,8 +28,10 @@ constexpr double kNone = 0.1;
 constexpr double kSeen = 0.05;
 /// A lamp is told without a dip of its own after this: it may be held by hand, or its dip would show nothing.
 constexpr double kConfirmed_s = 12;
-/// A lamp is dimmed once the change has lasted for so long (a person in the light moves on), and not later than that.
-constexpr double kBeforeDip_s = 8, kLatestDip_s = 42;
+/// A lamp is dimmed once the change has lasted for so long (a person in the light moves on), and not much later. Each
+/// change that went by itself doubles that, up to a visitor's minute: where people pass, no lamp is dimmed for them.
+constexpr double kBeforeDip_s = 8, kForDips_s = 34;
+constexpr int kMostPassedBy = 3;
 constexpr std::size_t kMostDips = 3;
 /// Samples under a dip.
 constexpr int kDipSamples = 5;
@@ -192,6 +194,7 @@ void FaultWatch::look(Time now, const GainEstimator& estimator, const std::vecto
   quiet_ = differs ? 0 : quiet_ + 1;
   if (quiet_ >= kOver) {
     changed_ = false;
+    passed_by_ = std::min(passed_by_ + 1, kMostPassedBy);
     dips_.clear();
     found_.reset();
     return;
@@ -307,9 +310,9 @@ bool FaultWatch::examines(Time now) const {
 }
 
 std::optional<FaultWatch::Dip> FaultWatch::lamp_to_dip(Time now, std::span<const std::uint8_t> may) const {
-  const double since_s = to_seconds(now - changed_since_);
-  if (!changed_ || dip_ || dips_.size() >= kMostDips || likely_.size() < 2 || since_s < kBeforeDip_s ||
-      since_s > kLatestDip_s || looked_at_ != now || is_benign(likely_.front()))
+  const double since_s = to_seconds(now - changed_since_), from_s = kBeforeDip_s * (1 << passed_by_);
+  if (!changed_ || dip_ || dips_.size() >= kMostDips || likely_.size() < 2 || since_s < from_s ||
+      since_s > from_s + kForDips_s || looked_at_ != now || is_benign(likely_.front()))
     return std::nullopt;
   Eigen::VectorXd error_lx(change_.before_lx.size());
   for (Index m = 0; m < error_lx.size(); ++m) error_lx[m] = noise_lx(static_cast<std::size_t>(m), kDipSamples);

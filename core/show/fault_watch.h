@@ -93,6 +93,7 @@ class FaultWatch {
   bool changed_ = false;  ///< some meter reads something else than usual
   Time changed_since_{};
   int quiet_ = 0;                   ///< samples in a row without a difference
+  int passed_by_ = 0;               ///< changes that went by themselves
   std::vector<MeanReading> since_;  ///< per luxmeter: reading over what is usual, since the change
   LightChange change_;              ///< as of the last look
   std::vector<ChangeCause> likely_, candidate_;

@@ -32,7 +32,8 @@ std::vector<std::uint8_t> ShowController::State::may_be_dipped() const {
 std::vector<double> ShowController::State::undipped_levels(Time now) const {
   std::vector<double> level(rig.fixtures.size());
   program.levels_at(now, level);
-  if (dipped) level[dipped->fixture] *= dipped->level / program.to_level[dipped->fixture];
+  if (dipped && program.to_level[dipped->fixture] > 0)
+    level[dipped->fixture] *= dipped->level / program.to_level[dipped->fixture];
   return level;
 }
 
