@@ -192,8 +192,7 @@ struct ShowController::State {
   [[nodiscard]] std::vector<double> safe_levels() const;
   /// The safe look within limits: with lost lamps as they are, and with all of them answering again.
   [[nodiscard]] std::vector<double> limited_safe_levels(Time now) const;
-  /// Largest |aimed − predicted now| / goal over the metered goals; 0 without any. What no level brings nearer, as a meter
-  /// that reads what no gain within bounds explains, is no gain.
+  /// Largest |aimed − measured| / goal over the metered goals; 0 without any.
   [[nodiscard]] double possible_gain(const Correction& correction) const;
   [[nodiscard]] std::optional<std::size_t> meter_at(std::size_t point) const;
   /// True if `lux` is where corrections want the point: at its goal, or at the best that limits allow.

@@ -50,9 +50,7 @@ double ShowController::State::possible_gain(const Correction& correction) const 
     const std::optional<LuxReading>& measured = readings.measured()[i];
     if (!point || !measured) continue;
     const double goal_lx = points_in_force[*point].goal_lx.value_or(0);
-    if (!(goal_lx > 0)) continue;
-    const double now_lx = predicted.at_meter(estimator, i, program.to_level).lux;
-    most = std::max(most, std::abs(correction.aimed_lx[*point] - now_lx) / goal_lx);
+    if (goal_lx > 0) most = std::max(most, std::abs(correction.aimed_lx[*point] - measured->lux) / goal_lx);
   }
   return most;
 }
