@@ -35,8 +35,9 @@ constexpr int kMostPassedBy = 3;
 constexpr std::size_t kMostDips = 3;
 /// Samples under a dip.
 constexpr int kDipSamples = 5;
-/// Samples in a row as usual end a finding.
+/// Samples in a row as usual end a finding; sooner, if the meters that changed by so many standard errors are back.
 constexpr int kOver = 10;
+constexpr double kChanged = 6;
 /// The slowest meters of the field answer this late.
 constexpr Duration kSlowestMeter = std::chrono::milliseconds(2500);
 constexpr Duration kLookEvery = std::chrono::seconds(1);
@@ -114,6 +115,7 @@ void FaultWatch::hear(const LuxReading& reading) {
   Heard& heard = heard_[reading.luxmeter];
   heard.sum_lx += reading.lux;
   ++heard.count;
+  heard.last_lx = reading.lux;
   heard.last = reading.taken;
 }
 
@@ -158,6 +160,38 @@ void FaultWatch::begin_change(Time now) {
   dips_.clear();
 }
 
+void FaultWatch::end_change() {
+  changed_ = false;
+  passed_by_ = std::min(passed_by_ + 1, kMostPassedBy);
+  dips_.clear();
+  found_.reset();
+  for (UsualReading& usual : usual_) usual.forget_recent();
+}
+
+std::vector<std::optional<MeanReading>> FaultWatch::changed_meters() const {
+  std::vector<std::optional<MeanReading>> changed(usual_.size());
+  for (std::size_t m = 0; m < usual_.size(); ++m) {
+    const auto row = static_cast<Index>(m);
+    const double off_lx = std::abs(change_.now_lx[row] - change_.before_lx[row]);
+    if (off_lx > kChanged * change_.error_lx[row]) changed[m] = since_[m];
+  }
+  return changed;
+}
+
+bool FaultWatch::all_are_back(const GainEstimator& estimator, const std::vector<double>& levels) const {
+  bool any = false;
+  for (std::size_t m = 0; m < usual_.size(); ++m) {
+    const auto& changed = found_->changed[m];
+    if (!changed) continue;
+    const double stated_lx = estimator.stated_lux(m, levels);
+    if (heard_[m].count == 0 || !(stated_lx > kDark_lx) ||
+        !usual_[m].is_back_from(*changed, heard_[m].last_lx / stated_lx))
+      return false;
+    any = true;
+  }
+  return any;
+}
+
 /// Until the slowest meter shows the change, the mean would be of two lights.
 void FaultWatch::listen(Time now, const std::vector<std::optional<double>>& ratio) {
   if (now - changed_since_ < kSlowestMeter) return;
@@ -168,7 +202,9 @@ void FaultWatch::listen(Time now, const std::vector<std::optional<double>>& rati
 }
 
 void FaultWatch::look(Time now, const GainEstimator& estimator, const std::vector<double>& levels) {
-  if (now < steady_from_ || now - looked_at_ < kLookEvery) return;
+  if (now < steady_from_) return;
+  if (found_ && !dip_ && all_are_back(estimator, levels)) end_change();
+  if (now - looked_at_ < kLookEvery) return;
   const double passed_s = to_seconds(now - std::exchange(looked_at_, now));
   for (UsualReading& usual : usual_) usual.pass(passed_s);
   follow_levels(estimator, levels);
@@ -192,13 +228,7 @@ void FaultWatch::look(Time now, const GainEstimator& estimator, const std::vecto
   }
   if (!changed_) return begin_change(now);
   quiet_ = differs ? 0 : quiet_ + 1;
-  if (quiet_ >= kOver) {
-    changed_ = false;
-    passed_by_ = std::min(passed_by_ + 1, kMostPassedBy);
-    dips_.clear();
-    found_.reset();
-    return;
-  }
+  if (quiet_ >= kOver) return end_change();
   listen(now, ratio);
   change_ = change(estimator, levels);
   judge(now);
@@ -286,7 +316,7 @@ void FaultWatch::judge(Time now) {
   std::string text;
   for (const ChangeCause& cause : causes) text += (text.empty() ? "" : ", or ") + words(cause);
   if (causes.size() > 1) text = "either " + text;
-  found_ = Finding{std::move(causes), text + "; " + evidence(), changed_since_};
+  found_ = Finding{std::move(causes), text + "; " + evidence(), changed_since_, changed_meters()};
 }
 
 /// Dead or dim: a dip of the lamp itself tells, and whether it is this lamp.

@@ -58,6 +58,8 @@ class FaultWatch {
     std::vector<ChangeCause> causes;  ///< one, or those between which the meters cannot decide
     std::string text;                 ///< with the evidence, and what to do
     Time since{};
+    /// Per luxmeter: its reading over what is usual, if that is not as usual.
+    std::vector<std::optional<MeanReading>> changed{};
   };
   [[nodiscard]] const std::optional<Finding>& found() const { return found_; }
 
@@ -65,6 +67,7 @@ class FaultWatch {
   struct Heard {
     double sum_lx = 0;
     int count = 0;
+    double last_lx = 0;
     Time last{};
   };
   /// Readings since the last look over what the model states, per luxmeter; none = nothing was heard, or it is dark.
@@ -73,6 +76,10 @@ class FaultWatch {
   /// What is usual is less certain by what the model may be wrong of these changes.
   void follow_levels(const GainEstimator& estimator, const std::vector<double>& levels);
   void begin_change(Time now);
+  void end_change();
+  [[nodiscard]] std::vector<std::optional<MeanReading>> changed_meters() const;
+  /// What was found is over: by its last reading, each meter that read otherwise is as usual again.
+  [[nodiscard]] bool all_are_back(const GainEstimator& estimator, const std::vector<double>& levels) const;
   void listen(Time now, const std::vector<std::optional<double>>& ratio);
   [[nodiscard]] LightChange change(const GainEstimator& estimator, const std::vector<double>& levels) const;
   void share_out(const GainEstimator& estimator, std::size_t luxmeter, LightChange& change) const;

@@ -14,6 +14,8 @@ constexpr double kWalks = 2e-5, kSlopeWalks = 2e-6, kFirstSlope = 1.5e-4;
 constexpr double kSlopeLasts_s = 120;
 /// Scatter of a sample before any is known, as a share, and how many samples that counts for.
 constexpr double kSupposedNoise = 0.01, kSupposed = 5;
+/// A larger difference between two samples, in standard deviations, is a change and no scatter.
+constexpr double kMostScatter = 4;
 /// The scatter is of about as many samples.
 constexpr int kScatterOf = 600;
 
@@ -50,6 +52,8 @@ void UsualReading::scatters(double by) {
     squares_ /= 2;
     differences_ /= 2;
   }
+  const double most = kMostScatter * std::sqrt(2 * noise_variance());
+  by = std::clamp(by, -most, most);
   squares_ += by * by;
   ++differences_;
 }
@@ -82,6 +86,10 @@ void UsualReading::pass(double seconds) {
 
 void UsualReading::doubt(double by) {
   variance_ += by * by;
+  forget_recent();
+}
+
+void UsualReading::forget_recent() {
   recent_.clear();
   unlearnt_ = 0;
 }
@@ -107,6 +115,11 @@ bool UsualReading::differs_from(const MeanReading& mean) const {
   const double error = std::sqrt(noise_variance() * (1 / static_cast<double>(kRecent) + 1.0 / mean.samples) +
                                  std::pow(kUnquietShare * before, 2));
   return std::abs(recent(kRecent) - before) > std::max(kDiffers * error, kSmallestShare * before);
+}
+
+bool UsualReading::is_back_from(const MeanReading& mean, double ratio) const {
+  const double half = std::abs(mean.mean() - 1) * ratio_ / 2;
+  return kDiffers * std::sqrt(noise_variance()) < half && std::abs(ratio - ratio_) < half;
 }
 
 }  // namespace luxrig

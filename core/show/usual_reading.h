@@ -42,6 +42,10 @@ class UsualReading {
   [[nodiscard]] bool may_differ() const;
   /// The last samples over what is usual are not as this mean of earlier ones, either.
   [[nodiscard]] bool differs_from(const MeanReading& mean) const;
+  /// It read this mean for a while, over what is usual, and this sample is surely nearer to what is usual.
+  [[nodiscard]] bool is_back_from(const MeanReading& mean, double ratio) const;
+  /// What was heard last is of what is over.
+  void forget_recent();
 
  private:
   /// Samples before it is known, and those over which a change is seen.
