@@ -146,8 +146,8 @@ void ShowController::State::watch_drift(Time now) {
   if (readings.sampled_at() != now) return;
   progress.converged = all_metered_goals_arrived();
   if (solving.running()) return;
-  // A correction by readings that nobody understands may do harm, and would blur them.
-  if (faults.examines(now) && progress.breaches.empty()) return;
+  // A correction by readings that nobody understands may do harm, and would blur them. In a daylit room it is the day.
+  if (!rig.daylight && faults.examines(now) && progress.breaches.empty()) return;
   // Of the samples before the next correction, only the last ones decide.
   const Duration apart = now - std::exchange(progress.sampled_at, now);
   if (progress.breaches.empty() && now - progress.corrected_at + kDriftSamples * apart < kDriftCorrectionEvery) return;
