@@ -20,6 +20,8 @@ constexpr double kRare = 6;
 constexpr double kMeterShare = 0.02;
 /// A lamp lights a meter directly if it gives this share of its light.
 constexpr double kLightsDirectly = 0.05;
+/// A meter has changed if it is off by so many standard errors.
+constexpr double kChanged = 3;
 /// Two meters or levels that differ by less may be exchanged unnoticed.
 constexpr double kNearlyAlike = 0.02;
 /// A lamp gives none of its light, less, or more: probabilities, and the most that it may give.
@@ -160,7 +162,7 @@ double CauseJudge::free_reading(Index m, double range_lx) const {
 void CauseJudge::add(std::vector<CauseEvidence>& found, Kind kind, std::vector<std::size_t> who, double share,
                      const Fit& fit, double alike) const {
   CauseEvidence evidence;
-  evidence.cause = {kind, std::move(who), share, 0};
+  evidence.cause = {kind, std::move(who), share};
   evidence.chi_squared = fit.chi_squared / static_cast<double>(data());
   evidence.badness = fit.badness + 2 * std::log(std::max(1.0, alike));
   found.push_back(std::move(evidence));
@@ -180,15 +182,48 @@ std::vector<CauseEvidence> CauseJudge::all() const {
         }))
       seen.push_back(f);
   }
-  for (std::size_t k = 0; k < seen.size(); ++k) {
-    lamp(found, seen[k]);
-    moved(found, seen[k]);
-    for (std::size_t l = k + 1; l < seen.size(); ++l) lamps_swapped(found, seen[k], seen[l]);
-  }
+  // Meters first: they are few, and once a cause explains the change, most lamps need not be looked at.
   for (const Index m : read_) meter(found, m);
   for (std::size_t a = 0; a < read_.size(); ++a)
     for (std::size_t b = a + 1; b < read_.size(); ++b) meters_swapped(found, read_[a], read_[b]);
+  for (const std::size_t f : seen) {
+    lamp(found, f);
+    moved(found, f);
+  }
+  // One of two exchanged lamps lights a meter that changed: all pairs of hundreds would take seconds.
+  const auto lights_a_change = [&](std::size_t f) {
+    return std::any_of(read_.begin(), read_.end(), [&](Index m) {
+      return std::abs(off_[m]) > kChanged * change_.error_lx[m] &&
+             change_.of_fixture(m, static_cast<Index>(f)) > kLightsDirectly * change_.before_lx[m];
+    });
+  };
+  const auto rest = std::stable_partition(seen.begin(), seen.end(), lights_a_change);
+  for (auto f = seen.begin(); f != rest; ++f)
+    for (auto g = f + 1; g != seen.end(); ++g) lamps_swapped(found, std::min(*f, *g), std::max(*f, *g));
   return found;
+}
+
+double CauseJudge::least_misfit(std::span<const Gives> lamps) const {
+  double sum = 0;
+  for (const Index m : read_) {
+    double lowest = 0, highest = 0, variance = change_.error_lx[m] * change_.error_lx[m];
+    for (const Gives& gives : lamps) {
+      const double light = change_.of_fixture(m, gives.lamp), least = (gives.least - 1) * light,
+                   most = (gives.most - 1) * light;
+      lowest += std::min(least, most);
+      highest += std::max(least, most);
+      variance +=
+          std::pow(std::max(std::abs(gives.least - 1), std::abs(gives.most - 1)) * light_error(m, gives.lamp), 2);
+    }
+    const double off = off_[m] < lowest ? lowest - off_[m] : off_[m] > highest ? off_[m] - highest : 0;
+    sum += off * off / variance;
+  }
+  return sum;
+}
+
+bool CauseJudge::far_behind(const std::vector<CauseEvidence>& found, double least_badness) {
+  return std::any_of(found.begin(), found.end(),
+                     [&](const CauseEvidence& each) { return each.badness + kFarBehind < least_badness; });
 }
 
 void CauseJudge::all_light(std::vector<CauseEvidence>& found) const {
@@ -260,6 +295,8 @@ CauseJudge::Fit CauseJudge::lamp_at(std::size_t f, double share) const {
 }
 
 void CauseJudge::lamp(std::vector<CauseEvidence>& found, std::size_t f) const {
+  const Gives gives{static_cast<Index>(f), 0, kMostShare};
+  if (far_behind(found, least_misfit(std::span(&gives, 1)))) return;
   MeanDensity mean;
   double best = std::numeric_limits<double>::infinity(), share = 1;
   const auto attempt = [&](double at, double weight) {
@@ -344,6 +381,13 @@ void CauseJudge::lamps_swapped(std::vector<CauseEvidence>& found, std::size_t f,
   const double then_f = change_.level_with_drive_of ? change_.level_with_drive_of(f, g) : level_g;
   const double then_g = change_.level_with_drive_of ? change_.level_with_drive_of(g, f) : level_f;
   if (!(then_f > 0 && then_g > 0) || std::abs(then_f - level_f) < kNearlyAlike * std::max(then_f, level_f)) return;
+  const auto range = [this](std::size_t lamp, double level_share) {
+    const double far = std::exp(kFarthest * curve_error(static_cast<Index>(lamp)));
+    const double a = std::pow(level_share, far), b = std::pow(level_share, 1 / far);
+    return Gives{static_cast<Index>(lamp), std::min(a, b), std::max(a, b)};
+  };
+  const std::array<Gives, 2> give{range(f, then_f / level_f), range(g, then_g / level_g)};
+  if (far_behind(found, kRare + least_misfit(give))) return;
   MeanDensity mean;
   for_exponents(curve_error(static_cast<Index>(f)), kCoarseExponentStep, [&](double of_f, double weight_f) {
     for_exponents(curve_error(static_cast<Index>(g)), kCoarseExponentStep, [&](double of_g, double weight_g) {
@@ -392,6 +436,7 @@ void CauseJudge::moved(std::vector<CauseEvidence>& found, std::size_t f) const {
     if (!direct) sum.badness += 2 * std::log(static_cast<double>(read_.size()));
     sum.chi_squared += left;
   }
+  if (far_behind(found, sum.badness)) return;
   const Fit dips = of_dips([&](std::size_t dipped, Index m) {
     return Follows{m, static_cast<Index>(dipped), 1, dipped == f ? off_[m] : 0};
   });

@@ -26,7 +26,9 @@ class CauseJudge {
   /// χ² of the change if nothing is wrong; of_nothing() with what the dips tell of that.
   [[nodiscard]] double of_change_of_nothing() const;
   [[nodiscard]] double of_nothing() const;
+  /// All causes but those that are surely farther than kFarBehind from the best: a rig of 400 lamps has 80,000 pairs.
   [[nodiscard]] std::vector<CauseEvidence> all() const;
+  static constexpr double kFarBehind = 40;
   /// How far a dip of this lamp would set these causes apart, in χ².
   [[nodiscard]] double apart_by_dip(const ChangeCause& a, const ChangeCause& b, std::size_t lamp, double level_share,
                                     const Eigen::VectorXd& dip_error_lx) const;
@@ -56,6 +58,14 @@ class CauseJudge {
   /// Of the dips, as far as they are not of `without`.
   [[nodiscard]] Fit of_dips(const Following& following, std::ptrdiff_t without = -1) const;
   [[nodiscard]] Fit of_dips_of(std::size_t fixture, const Following& following) const;
+  /// No share of its light between these that a lamp gives explains the change better than this, in χ².
+  struct Gives {
+    Eigen::Index lamp = 0;
+    double least = 0, most = 1;
+  };
+  [[nodiscard]] double least_misfit(std::span<const Gives> lamps) const;
+  /// Whether a cause with at least this badness need not be looked at.
+  [[nodiscard]] static bool far_behind(const std::vector<CauseEvidence>& found, double least_badness);
   [[nodiscard]] double of_no_change(Eigen::Index meter, double uncertain_lx = 0) const;
   [[nodiscard]] double free_reading(Eigen::Index meter, double range_lx) const;
   void add(std::vector<CauseEvidence>& found, Kind kind, std::vector<std::size_t> who, double share, const Fit& fit,

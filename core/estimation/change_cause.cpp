@@ -23,28 +23,17 @@ constexpr double kExplains = 6;
 /// A separation of causes by a dip that is less than this tells nothing, and more than the other is enough.
 constexpr double kTells = 4, kTellsEnough = 40;
 
-std::vector<CauseEvidence> sorted_causes(const CauseJudge& judge) {
+/// Those within kMargin of the best; none if even that explains nothing.
+std::vector<ChangeCause> near_best(const CauseJudge& judge) {
   std::vector<CauseEvidence> found = judge.all();
   std::sort(found.begin(), found.end(),
             [](const CauseEvidence& a, const CauseEvidence& b) { return a.badness < b.badness; });
-  return found;
-}
-
-/// Those within kMargin of the best; its margin is set.
-std::vector<ChangeCause> near_best(const CauseJudge& judge) {
-  const std::vector<CauseEvidence> found = sorted_causes(judge);
   std::vector<ChangeCause> causes;
   if (found.empty() || found.front().chi_squared > kExplains ||
       judge.of_nothing() - found.front().badness < kBeyondNoise / 2)
     return causes;
-  for (const CauseEvidence& each : found) {
-    const double behind = each.badness - found.front().badness;
-    if (behind > kMargin) {
-      causes.front().margin = causes.size() == 1 ? behind : 0;
-      break;
-    }
-    causes.push_back(each.cause);
-  }
+  for (CauseEvidence& each : found)
+    if (each.badness - found.front().badness <= kMargin) causes.push_back(std::move(each.cause));
   return causes;
 }
 
@@ -69,20 +58,21 @@ void check_sizes(const LightChange& change) {
 
 }  // namespace
 
-std::vector<ChangeCause> causes_of(const LightChange& change) {
+std::vector<ChangeCause> likely_causes(const LightChange& change) {
   check_sizes(change);
   const CauseJudge judge(change);
   if (!anything_changed(judge)) return {};
   std::vector<ChangeCause> causes = near_best(judge);
-  if (causes.empty() || causes.size() > kMostCauses) return {{Kind::unclear, {}, 1, 0}};
+  if (causes.empty()) return {{Kind::unclear, {}, 1}};
   return causes;
 }
 
-std::vector<ChangeCause> likely_causes(const LightChange& change) {
-  check_sizes(change);
-  const CauseJudge judge(change);
-  return anything_changed(judge) ? near_best(judge) : std::vector<ChangeCause>{};
+std::vector<ChangeCause> causes_to_tell(std::vector<ChangeCause> likely) {
+  if (likely.size() > kMostCauses) return {{Kind::unclear, {}, 1}};
+  return likely;
 }
+
+std::vector<ChangeCause> causes_of(const LightChange& change) { return causes_to_tell(likely_causes(change)); }
 
 std::optional<std::size_t> lamp_that_tells(const LightChange& change, std::span<const ChangeCause> causes,
                                            std::span<const std::uint8_t> may, double level_share,

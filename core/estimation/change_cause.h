@@ -56,15 +56,17 @@ struct ChangeCause {
   };
   Kind kind = Kind::none;
   std::vector<std::size_t> who{};  ///< fixtures, or luxmeters if the kind is of meters
-  double share = 1;   ///< light of the lamp, of all or of the day over that before; reading over before of a meter
-  double margin = 0;  ///< by how much it is better than the next cause: 10 is a likelihood ratio of 150
+  double share = 1;  ///< light of the lamp, of all or of the day over that before; reading over before of a meter
 };
 
-/// The causes that explain the change, best first: one if it is clear. Several if they explain it about as well (at
-/// most kMostCauses). Kind::unclear alone if none explains it, or too many do.
-[[nodiscard]] std::vector<ChangeCause> causes_of(const LightChange& change);
-/// All of them, however many; empty if none explains it.
+/// The causes that explain the change about as well as the best, which comes first. Kind::unclear alone if none explains
+/// it; empty if nothing changed. The show waits for it: 1 ms for 12 lamps and 6 meters,
+/// a quarter of a second for 200 lamps and 20 meters.
 [[nodiscard]] std::vector<ChangeCause> likely_causes(const LightChange& change);
+/// What a person is told of them: Kind::unclear alone if there are more than kMostCauses.
+[[nodiscard]] std::vector<ChangeCause> causes_to_tell(std::vector<ChangeCause> likely);
+/// Both.
+[[nodiscard]] std::vector<ChangeCause> causes_of(const LightChange& change);
 
 /// Which lamp to dim to this share of its level, so that the meters tell these causes apart; nullopt: none would.
 /// may: per fixture, 1 = it may be dimmed. dip_error_lx: per luxmeter, as LampDip::error_lx will be.

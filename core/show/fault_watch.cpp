@@ -302,9 +302,9 @@ LightChange FaultWatch::change(const GainEstimator& estimator, const std::vector
 }
 
 void FaultWatch::judge(Time now) {
-  std::vector<ChangeCause> causes = causes_of(change_);
+  likely_ = likely_causes(change_);
+  std::vector<ChangeCause> causes = causes_to_tell(likely_);
   const bool unclear = causes.size() == 1 && causes.front().kind == Kind::unclear;
-  likely_ = unclear ? likely_causes(change_) : causes;
   same_ = same(causes, candidate_) ? same_ + 1 : 1;
   candidate_ = causes;
   const bool clear = causes.size() == 1 && !unclear;
@@ -328,7 +328,7 @@ void FaultWatch::add_doubt_of_lamps() {
     const bool known =
         std::any_of(dips_.begin(), dips_.end(), [&](const LampDip& dip) { return dip.fixture == lamp.who.front(); });
     if (known) continue;
-    likely_.push_back({Kind::lamp, lamp.who, lamp.share > kPerhapsDead ? 0 : kPerhapsDim, 0});
+    likely_.push_back({Kind::lamp, lamp.who, lamp.share > kPerhapsDead ? 0 : kPerhapsDim});
   }
 }
 
