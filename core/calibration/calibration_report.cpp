@@ -78,9 +78,6 @@ Json json_of(const CalibrationReport::SeenBy& seen) {
   json["full_pixels"] = seen.overflow.pixel_share;
   json["places"] = seen.overflow.places;
   json["places_left_out"] = seen.overflow.full_places;
-  if (seen.variance)
-    for (const CameraBudgetPart& part : kCameraBudgetParts)
-      json["share_of_variance"][part.key] = *seen.variance.*part.share;
   return json;
 }
 
@@ -131,7 +128,7 @@ CalibrationReport report_of(const Session& session, const RigLight& before, cons
 
 std::string to_json(const CalibrationReport& report) {
   Json json;
-  json["luxrig_calibration_report"] = 1;
+  json["luxrig_calibration_report"] = 2;
   json["rig"] = report.found.rig;
   json["made"] = report.found.made;
   json["by"] = report.by;
@@ -149,8 +146,11 @@ std::string to_json(const CalibrationReport& report) {
                                 {"in_errors", reading.in_errors}});
   json["not_found"] = report.not_found;
   json["to_settle"] = report.to_settle;
-  if (report.seen) json["camera"] = json_of(*report.seen);
-  if (report.map) json["map"] = json_of(*report.map);
+  for (const CalibrationReport::SeenBy& seen : report.seen) json["cameras"].push_back(json_of(seen));
+  if (report.variance)
+    for (const CameraBudgetPart& part : kCameraBudgetParts)
+      json["share_of_variance"][part.key] = *report.variance.*part.share;
+  for (const LuxMap& map : report.maps) json["maps"].push_back(json_of(map));
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

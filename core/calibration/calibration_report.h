@@ -32,7 +32,6 @@ struct CalibrationReport {
   };
   struct SeenBy {
     std::string camera;
-    std::optional<CameraBudget> variance;  ///< of the light at the goals; none = the rig has no goal
     CameraOverflow overflow;
   };
 
@@ -43,8 +42,10 @@ struct CalibrationReport {
   std::vector<Reading> readings;
   std::vector<std::string> not_found;  ///< a sentence each
   std::vector<std::string> to_settle;  ///< points where a luxmeter would settle most of the rest, best first
-  std::optional<SeenBy> seen{};        ///< if a camera measured
-  std::optional<LuxMap> map{};         ///< of what it sees
+  std::vector<SeenBy> seen{};          ///< each camera that measured
+  /// With a camera: of the light at the goals; none = the rig has no goal.
+  std::optional<CameraBudget> variance{};
+  std::vector<LuxMap> maps{};  ///< of what the cameras see
 };
 
 /// before, now: the light before and after it was measured, of this session. level: share of full light of every lamp at
@@ -52,7 +53,7 @@ struct CalibrationReport {
 [[nodiscard]] CalibrationReport report_of(const Session& session, const RigLight& before, const RigLight& now,
                                           Calibration found, double level, std::span<const std::size_t> no_points);
 
-/// JSON, "luxrig_calibration_report": 1. The same value gives the same bytes.
+/// JSON, "luxrig_calibration_report": 2. The same value gives the same bytes.
 [[nodiscard]] std::string to_json(const CalibrationReport& report);
 /// One page without scripts or other files.
 [[nodiscard]] std::string to_html(const CalibrationReport& report);

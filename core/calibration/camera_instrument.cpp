@@ -85,38 +85,6 @@ double CameraInstrument::lens_share(const LightUnknowns& known, double rho) cons
   return std::exp(-log_loss);
 }
 
-CameraBudget CameraInstrument::shares_of(const LightBudget& budget) const {
-  const double all = budget.sum();
-  CameraBudget shares;
-  if (!(all > 0)) return shares;
-  const auto of = [&](std::size_t first, std::size_t count) {
-    return budget.instrument.segment(static_cast<Index>(first), static_cast<Index>(count)).sum() / all;
-  };
-  shares.lens = of(first_lens_, kLens);
-  shares.response = of(first_response_, responses_);
-  shares.reflectance = of(first_paint_, first_lens_ - first_paint_) + budget.paint / all;
-  shares.stray = budget.stray.segment(static_cast<Index>(first_stray_), 2).sum() / all;
-  shares.lamps = (budget.output + budget.mount) / all;
-  shares.noise = budget.noise / all;
-  shares.other = 1 - shares.lens - shares.response - shares.reflectance - shares.stray - shares.lamps - shares.noise;
-  return shares;
-}
-
-std::optional<CameraBudget> CameraInstrument::of_goals(const Rig& rig, const LightUnknowns& known,
-                                                       const Eigen::VectorXd& level) const {
-  CameraBudget sum;
-  double goals = 0;
-  for (std::size_t p = 0; p < rig.points.size(); ++p) {
-    if (!rig.points[p].goal_lx) continue;
-    const CameraBudget shares = shares_of(known.budget(p, level));
-    for (const CameraBudgetPart& part : kCameraBudgetParts) sum.*part.share += shares.*part.share;
-    ++goals;
-  }
-  if (!(goals > 0)) return std::nullopt;
-  for (const CameraBudgetPart& part : kCameraBudgetParts) sum.*part.share /= goals;
-  return sum;
-}
-
 void CameraInstrument::put(const Rig& rig, const LightUnknowns& known, CalibratedCamera& into) const {
   const auto relative_error = [&](std::size_t meter) {
     return known.meter_gain_standard_error(meter) / known.meter_gain(meter);
@@ -130,6 +98,41 @@ void CameraInstrument::put(const Rig& rig, const LightUnknowns& known, Calibrate
     if (const std::size_t meter = response_to(l); relative_error(meter) < kToldNothing * usual_.log_response)
       into.responses.emplace_back(rig.luminaires[l].name,
                                   Known{known.meter_gain(meter), known.meter_gain_standard_error(meter)});
+}
+
+CameraBudget budget_of(const LightBudget& budget, std::span<const CameraInstrument* const> cameras) {
+  const double all = budget.sum();
+  CameraBudget shares;
+  if (!(all > 0)) return shares;
+  const auto of = [all](const Eigen::VectorXd& parts, std::size_t first, std::size_t count) {
+    return parts.segment(static_cast<Index>(first), static_cast<Index>(count)).sum() / all;
+  };
+  for (const CameraInstrument* const camera : cameras) {
+    shares.lens += of(budget.instrument, camera->first_lens_, kLens);
+    shares.response += of(budget.instrument, camera->first_response_, camera->responses_);
+    shares.reflectance += of(budget.instrument, camera->first_paint_, camera->first_lens_ - camera->first_paint_);
+    shares.stray += of(budget.stray, camera->first_stray_, 2);
+  }
+  shares.reflectance += budget.paint / all;
+  shares.lamps = (budget.output + budget.mount) / all;
+  shares.noise = budget.noise / all;
+  shares.other = 1 - shares.lens - shares.response - shares.reflectance - shares.stray - shares.lamps - shares.noise;
+  return shares;
+}
+
+std::optional<CameraBudget> budget_of_goals(const Rig& rig, const LightUnknowns& known, const Eigen::VectorXd& level,
+                                            std::span<const CameraInstrument* const> cameras) {
+  CameraBudget sum;
+  double goals = 0;
+  for (std::size_t p = 0; p < rig.points.size(); ++p) {
+    if (!rig.points[p].goal_lx) continue;
+    const CameraBudget shares = budget_of(known.budget(p, level), cameras);
+    for (const CameraBudgetPart& part : kCameraBudgetParts) sum.*part.share += shares.*part.share;
+    ++goals;
+  }
+  if (!(goals > 0)) return std::nullopt;
+  for (const CameraBudgetPart& part : kCameraBudgetParts) sum.*part.share /= goals;
+  return sum;
 }
 
 }  // namespace luxrig

@@ -62,19 +62,23 @@ class CameraInstrument {
   [[nodiscard]] std::size_t response_to(std::size_t luminaire) const { return first_response_ + luminaire; }
   /// What the lens lets through, over that in the middle. rho: of the way to a corner.
   [[nodiscard]] double lens_share(const LightUnknowns& known, double rho) const;
-  [[nodiscard]] CameraBudget shares_of(const LightBudget& budget) const;
-  /// Mean over the goals; none = the rig has no goal.
-  [[nodiscard]] std::optional<CameraBudget> of_goals(const Rig& rig, const LightUnknowns& known,
-                                                     const Eigen::VectorXd& level) const;
   /// Lens, stray light, and responses to the kinds of lamps that readings told something of; the rest stays.
   void put(const Rig& rig, const LightUnknowns& known, CalibratedCamera& into) const;
 
  private:
+  friend CameraBudget budget_of(const LightBudget& budget, std::span<const CameraInstrument* const> cameras);
   [[nodiscard]] Showing showing(const SeenPlace& place, const SeenLight& light, int width_px, int height_px) const;
 
   CameraPriors usual_;
   std::size_t first_paint_, first_lens_, first_response_, responses_, first_stray_;
   std::vector<std::size_t> of_lamp_;
 };
+
+/// cameras: all that the light was read by.
+[[nodiscard]] CameraBudget budget_of(const LightBudget& budget, std::span<const CameraInstrument* const> cameras);
+/// Mean over the goals; none = the rig has no goal.
+[[nodiscard]] std::optional<CameraBudget> budget_of_goals(const Rig& rig, const LightUnknowns& known,
+                                                          const Eigen::VectorXd& level,
+                                                          std::span<const CameraInstrument* const> cameras);
 
 }  // namespace luxrig

@@ -146,13 +146,15 @@ LampCurve CameraRun::curve_from(std::size_t first) const {
   return curve_of(read);
 }
 
-std::vector<LightReading> CameraRun::readings(const CameraInstrument& camera, std::size_t first_receiver) const {
+std::vector<LightReading> CameraRun::readings(const CameraInstrument& camera, std::size_t first_receiver,
+                                              std::span<const LampCurve> curves) const {
   LUXRIG_CHECK(found_ && taken_.size() == plan_.size(), "{} of {} pictures are taken", taken_.size(), plan_.size());
+  LUXRIG_CHECK(curves.size() == curves_.size(), "{} curves of {} fixtures", curves.size(), curves_.size());
   std::vector<LightReading> readings;
   for (std::size_t k = 0; k < plan_.size(); ++k) {
     if (!first_of_lamp(k) || !(taken_[k].level > 0)) continue;
     const std::size_t f = plan_[k].fixture;
-    const VectorXd level = share_at_level(curves_[f].of_level, taken_[k].level) *
+    const VectorXd level = share_at_level(curves[f].of_level, taken_[k].level) *
                            VectorXd::Unit(static_cast<Index>(rig_->fixtures.size()), static_cast<Index>(f));
     auto of_lamp = camera.readings(places_, taken_[k].light, start_.stated.width_px, start_.stated.height_px,
                                    first_receiver, level);

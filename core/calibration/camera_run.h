@@ -40,7 +40,8 @@ class CameraRun {
             std::span<const double> brightest, std::vector<LampCurve> curves);
 
   /// Levels of all fixtures that are to be photographed now; none = all is. First most of the room at once, by which the
-  /// camera is found; then the dark; then each lamp alone.
+  /// camera is found; then the dark; then each lamp alone. Runs of several cameras that begin with the same levels and
+  /// curves ask for the same.
   [[nodiscard]] std::optional<std::vector<double>> next() const;
   [[nodiscard]] std::string words_of_next() const;
   [[nodiscard]] std::size_t steps() const { return 1 + plan_.size(); }
@@ -56,7 +57,9 @@ class CameraRun {
   /// Call these when all is measured. first_receiver: of the first place.
   [[nodiscard]] const std::vector<LampCurve>& curves() const { return curves_; }
   [[nodiscard]] const CameraOverflow& overflow() const { return overflow_; }
-  [[nodiscard]] std::vector<LightReading> readings(const CameraInstrument& camera, std::size_t first_receiver) const;
+  /// curves: per fixture, such as curves(), or those that several cameras found together.
+  [[nodiscard]] std::vector<LightReading> readings(const CameraInstrument& camera, std::size_t first_receiver,
+                                                   std::span<const LampCurve> curves) const;
 
  private:
   struct Taken {

@@ -47,10 +47,9 @@ std::string map_section(const LuxMap& map) {
       fmt::format("{:.3g} to {:.3g} lx at {} places, half of them known to {:.1f} % or better, the worst to {:.1f} %",
                   lux.front(), lux.back(), lux.size(), 100 * shares[shares.size() / 2], 100 * shares.back());
   std::string html = fmt::format(
-      "<h2>The light where the camera sees it</h2>\n<p>Lamps only, under {}: {}. Between the places the light is "
-      "traced "
-      "in the room as it was found. Black: no matt surface.</p>\n",
-      escaped_for_markup(map.light), range);
+      "<h2>The light where camera \"{}\" sees it</h2>\n<p>Lamps only, under {}: {}. Between the places the light is "
+      "traced in the room as it was found. Black: no matt surface.</p>\n",
+      escaped_for_markup(map.camera), escaped_for_markup(map.light), range);
   html += picture_of(map.lux_png, fmt::format("Lux as camera \"{}\" sees the room: {}", map.camera, range));
   html += picture_of(map.error_png, "Standard error of that light, in percent of it");
   html +=
@@ -64,30 +63,29 @@ std::string map_section(const LuxMap& map) {
 }
 
 std::string budget_section(const CalibrationReport& report) {
-  const CalibrationReport::SeenBy& seen = *report.seen;
-  std::string html;
-  if (seen.variance) {
-    double squares = 0, goals = 0;
-    for (const auto& goal : report.goals)
-      if (goal.found.lux > 0) squares += std::pow(goal.found.share_of_error(), 2), ++goals;
-    const double rms = goals > 0 ? std::sqrt(squares / goals) : 0;
-    html += fmt::format(
-        "<p>What the rest of the error at the goals is owed to: {:.1f} % of their light, root mean square.</p>\n<div "
-        "class=\"wide\">\n<table class=\"words\"><tr><th>owed to</th><th>share of the variance</th><th>alone it would "
-        "be</th></tr>\n",
-        100 * rms);
-    for (const CameraBudgetPart& part : kCameraBudgetParts) {
-      const double share = std::max(0.0, *seen.variance.*part.share);
-      html += fmt::format("<tr><td>{}</td><td>{:.1f} %</td><td>± {:.1f} %</td></tr>\n", escaped_for_markup(part.words),
-                          100 * share, 100 * rms * std::sqrt(share));
-    }
-    html += "</table>\n</div>\n";
+  if (!report.variance) return {};
+  double squares = 0, goals = 0;
+  for (const auto& goal : report.goals)
+    if (goal.found.lux > 0) squares += std::pow(goal.found.share_of_error(), 2), ++goals;
+  const double rms = goals > 0 ? std::sqrt(squares / goals) : 0;
+  std::string html = fmt::format(
+      "<h2>What the rest of the error is owed to</h2>\n<p>At the goals it is {:.1f} % of their light, root mean "
+      "square.</p>\n<div class=\"wide\">\n<table class=\"words\"><tr><th>owed to</th><th>share of the variance</th>"
+      "<th>alone it would be</th></tr>\n",
+      100 * rms);
+  for (const CameraBudgetPart& part : kCameraBudgetParts) {
+    const double share = std::max(0.0, *report.variance.*part.share);
+    html += fmt::format("<tr><td>{}</td><td>{:.1f} %</td><td>± {:.1f} %</td></tr>\n", escaped_for_markup(part.words),
+                        100 * share, 100 * rms * std::sqrt(share));
   }
-  html += fmt::format(
+  return html + "</table>\n</div>\n";
+}
+
+std::string overflow_words(const CameraOverflow& overflow) {
+  return fmt::format(
       "<p>Too bright for the shortest exposure: {:.2f} % of the pixels. {} of {} times that a place was to be read it "
       "was left out for that.</p>\n",
-      100 * seen.overflow.pixel_share, seen.overflow.full_places, seen.overflow.places);
-  return html;
+      100 * overflow.pixel_share, overflow.full_places, overflow.places);
 }
 
 /// To so many digits; what rounds to 0 has no sign.
@@ -133,12 +131,15 @@ std::string camera_table(const CalibratedCamera& camera) {
 }  // namespace
 
 std::string camera_section(const CalibrationReport& report) {
-  if (!report.seen) return {};
-  std::string html = report.map ? map_section(*report.map) : "";
-  html += fmt::format("<h2>Camera \"{}\"</h2>\n", escaped_for_markup(report.seen->camera));
-  for (const CalibratedCamera& camera : report.found.cameras)
-    if (camera.name == report.seen->camera) html += camera_table(camera);
-  return html + budget_section(report);
+  std::string html = budget_section(report);
+  for (const LuxMap& map : report.maps) html += map_section(map);
+  for (const CalibrationReport::SeenBy& seen : report.seen) {
+    html += fmt::format("<h2>Camera \"{}\"</h2>\n", escaped_for_markup(seen.camera));
+    for (const CalibratedCamera& camera : report.found.cameras)
+      if (camera.name == seen.camera) html += camera_table(camera);
+    html += overflow_words(seen.overflow);
+  }
+  return html;
 }
 
 }  // namespace luxrig

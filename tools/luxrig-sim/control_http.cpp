@@ -17,6 +17,7 @@ constexpr std::string_view kRoutes[] = {"/",      "/truth", "/rig",      "/pictu
                                         "/shade", "/cover", "/daylight", "/clear_faults", "/reset_peaks"};
 constexpr double kMostDaylight = 1000;
 constexpr double kLeastUnderexposed = 1e-3, kMostUnderexposed = 1e6;
+constexpr int kUsualPasses = 24, kMostPasses = 256;
 
 HttpResponse json_answer(const nlohmann::json& json) {
   return {200, "application/json", json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)};
@@ -67,10 +68,7 @@ class Server final : public ControlHttp {
          [this](const HttpRequest&) {
            return HttpResponse{200, "application/json", parts_.rig_json};
          }},
-        {"GET", "/picture",
-         [this](const HttpRequest& request) {
-           return take_picture(request.parameter("camera").value_or(""), request.parameter("underexposed"));
-         }},
+        {"GET", "/picture", [this](const HttpRequest& request) { return take_picture(request); }},
         {"POST", "/fault", [this](const HttpRequest& request) { return switch_fault(request.body); }},
         {"POST", "/shade",
          [this](const HttpRequest& request) {
@@ -109,7 +107,9 @@ class Server final : public ControlHttp {
     return options;
   }
 
-  HttpResponse take_picture(const std::string& name, const std::optional<std::string>& underexposed) {
+  HttpResponse take_picture(const HttpRequest& request) {
+    const std::string name = request.parameter("camera").value_or("");
+    const auto underexposed = request.parameter("underexposed"), passes = request.parameter("passes");
     const auto camera = std::find_if(parts_.rig.cameras.begin(), parts_.rig.cameras.end(),
                                      [&](const PictureCamera& known) { return known.name == name; });
     if (camera == parts_.rig.cameras.end()) return http_refusal(404, "the rig has no such camera");
@@ -121,7 +121,14 @@ class Server final : public ControlHttp {
         return http_refusal(400, fmt::format("underexposed={} is out of range: use {:g} to {:g}", *underexposed,
                                              kLeastUnderexposed, kMostUnderexposed));
     }
-    auto picture = cameras_.take(static_cast<std::size_t>(camera - parts_.rig.cameras.begin()), times);
+    int samples = kUsualPasses;
+    if (passes) {
+      const char* const end = passes->data() + passes->size();
+      const auto [stopped, error] = std::from_chars(passes->data(), end, samples);
+      if (error != std::errc() || stopped != end || samples < 1 || samples > kMostPasses)
+        return http_refusal(400, fmt::format("passes={} is out of range: use 1 to {}", *passes, kMostPasses));
+    }
+    auto picture = cameras_.take(static_cast<std::size_t>(camera - parts_.rig.cameras.begin()), times, samples);
     if (!picture) return http_refusal(500, picture.error().detail);
     return {200, "image/x-portable-floatmap", std::move(*picture)};
   }

@@ -48,13 +48,14 @@ Result<void> SimulatedCameras::trace_light(std::size_t camera, const Shot& shot)
   return {};
 }
 
-Result<std::string> SimulatedCameras::take(std::size_t camera, double underexposed) {
+Result<std::string> SimulatedCameras::take(std::size_t camera, double underexposed, int passes) {
   const std::lock_guard one_at_a_time(mutex_);
   ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), 10);  // of this thread, and of threads that it starts
   Shot shot;
   shot.seed = deviations_.seed;
   shot.number = shots_++;
   shot.underexposed = underexposed;
+  shot.passes = passes;
   if (auto traced = trace_light(camera, shot); !traced) return tl::unexpected(traced.error());
   return to_pfm(exposed(last_->on_sensor, Sensor{}, shot));
 }

@@ -21,8 +21,8 @@ class SimulatedCameras {
       : rig_(rig), world_(world), world_mutex_(world_mutex), deviations_(deviations) {}
 
   /// A picture in the format PFM. Takes seconds, at low priority, one picture at a time. The wires are served all the
-  /// while. camera: of the rig. Another exposure of the same light takes no time.
-  [[nodiscard]] Result<std::string> take(std::size_t camera, double underexposed);
+  /// while. camera: of the rig. passes: samples per pixel. Another exposure of the same light takes no time.
+  [[nodiscard]] Result<std::string> take(std::size_t camera, double underexposed, int passes);
 
  private:
   /// The light of the last picture.

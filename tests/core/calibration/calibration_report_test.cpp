@@ -47,7 +47,8 @@ CalibrationReport seen_example() {
   budget.lens = 0.25;
   budget.reflectance = 0.64;
   budget.noise = 0.11;
-  report.seen = {camera.name, budget, {0.0012, 200, 3}};
+  report.seen = {{camera.name, {0.0012, 200, 3}}};
+  report.variance = budget;
   LuxMap map;
   map.camera = camera.name;
   map.light = "the look in force";
@@ -56,7 +57,7 @@ CalibrationReport seen_example() {
                 {"", {0, 0, 0}, Vec3::UnitZ(), 5, 6, {0, 0.2}}};
   map.lux_png = std::string("\x89PNG\0\xff", 6);
   map.error_png = "ab";
-  report.map = map;
+  report.maps = {map};
   return report;
 }
 
@@ -76,28 +77,29 @@ TEST(CalibrationReport, ByACameraHasItsMapItsErrorsAndWhatWasLeftOut) {
 
   const auto json = nlohmann::json::parse(to_json(seen_example()), nullptr, false);
   ASSERT_TRUE(json.is_object());
-  EXPECT_EQ(json["camera"]["share_of_variance"]["lens"], 0.25);
-  EXPECT_EQ(json["camera"]["share_of_variance"]["paint"], 0.64);
-  EXPECT_EQ(json["camera"]["full_pixels"], 0.0012);
-  EXPECT_EQ(json["camera"]["places"], 200);
-  EXPECT_EQ(json["camera"]["places_left_out"], 3);
-  EXPECT_EQ(json["map"]["light"], "the look in force");
-  EXPECT_EQ(json["map"]["share_of_full_light"]["wash"], 0.35);
-  ASSERT_EQ(json["map"]["places"].size(), 2u);
-  EXPECT_EQ(json["map"]["places"][0]["point"], "desk");
-  EXPECT_EQ(json["map"]["places"][0]["position_m"], (nlohmann::json{1.0, 2.0, 0.7}));
-  EXPECT_EQ(json["map"]["places"][0]["lux"], 180.0);
-  EXPECT_EQ(json["map"]["places"][0]["standard_error_lx"], 9.0);
-  EXPECT_FALSE(json["map"]["places"][1].contains("point"));
-  EXPECT_FALSE(nlohmann::json::parse(to_json(example())).contains("map")) << "no camera, no map";
+  EXPECT_EQ(json["share_of_variance"]["lens"], 0.25);
+  EXPECT_EQ(json["share_of_variance"]["paint"], 0.64);
+  EXPECT_EQ(json["cameras"][0]["full_pixels"], 0.0012);
+  EXPECT_EQ(json["cameras"][0]["places"], 200);
+  EXPECT_EQ(json["cameras"][0]["places_left_out"], 3);
+  EXPECT_EQ(json["maps"][0]["light"], "the look in force");
+  EXPECT_EQ(json["maps"][0]["share_of_full_light"]["wash"], 0.35);
+  ASSERT_EQ(json["maps"][0]["places"].size(), 2u);
+  EXPECT_EQ(json["maps"][0]["places"][0]["point"], "desk");
+  EXPECT_EQ(json["maps"][0]["places"][0]["position_m"], (nlohmann::json{1.0, 2.0, 0.7}));
+  EXPECT_EQ(json["maps"][0]["places"][0]["lux"], 180.0);
+  EXPECT_EQ(json["maps"][0]["places"][0]["standard_error_lx"], 9.0);
+  EXPECT_FALSE(json["maps"][0]["places"][1].contains("point"));
+  EXPECT_FALSE(nlohmann::json::parse(to_json(example())).contains("maps")) << "no camera, no map";
 }
 
 TEST(CalibrationReport, OfACameraWithoutGoalsOrPicturesIsStillAPage) {
   CalibrationReport report;
-  report.seen.emplace().camera = "front";
-  report.map.emplace();
+  report.seen = {{"front", {}}, {"back", {}}};
+  report.maps.emplace_back();
   const std::string page = to_html(report);
   EXPECT_NE(page.find("Camera \"front\""), std::string::npos);
+  EXPECT_NE(page.find("Camera \"back\""), std::string::npos);
   EXPECT_EQ(page.find("<img"), std::string::npos);
   EXPECT_EQ(page.find("nan"), std::string::npos);
 }
@@ -120,7 +122,7 @@ TEST(CalibrationReport, IsAPageThatNoNameCanBreak) {
 TEST(CalibrationReport, IsJsonWithEveryErrorBesideItsValue) {
   const auto json = nlohmann::json::parse(to_json(example()), nullptr, false);
   ASSERT_TRUE(json.is_object());
-  EXPECT_EQ(json["luxrig_calibration_report"], 1);
+  EXPECT_EQ(json["luxrig_calibration_report"], 2);
   EXPECT_EQ(json["goals"][0]["stated_lx"], (nlohmann::json{200.0, 60.0}));
   EXPECT_EQ(json["goals"][0]["found_lx"], (nlohmann::json{166.0, 5.0}));
   EXPECT_EQ(json["readings"][0]["in_errors"], 5.2);

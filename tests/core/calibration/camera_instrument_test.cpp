@@ -130,9 +130,10 @@ TEST(CameraInstrument, TheBudgetSumsToTheVarianceAndFallsWhereAReadingTells) {
     const LightQuery query{1, all, {}, {}};
     return known.covariance({&query, 1})(0, 0);
   };
+  const CameraInstrument* const each[] = {&camera};
   const LightBudget before = known.budget(1, all);
   EXPECT_NEAR(before.sum(), variance(), 1e-9 * variance());
-  const CameraBudget shares = camera.shares_of(before);
+  const CameraBudget shares = budget_of(before, each);
   EXPECT_NEAR(
       shares.lens + shares.stray + shares.response + shares.reflectance + shares.lamps + shares.noise + shares.other, 1,
       1e-9);
@@ -142,6 +143,26 @@ TEST(CameraInstrument, TheBudgetSumsToTheVarianceAndFallsWhereAReadingTells) {
   const LightBudget after = known.budget(1, all);
   EXPECT_NEAR(after.sum(), variance(), 1e-9 * variance());
   EXPECT_LT(after.output, 0.05 * before.output);
+}
+
+TEST(CameraInstrument, TheBudgetOfTwoCamerasHasThePartsOfBoth) {
+  SeenWall wall(3);
+  const CameraInstrument left(wall.rig, 2, wall.priors), right(wall.rig, 2, wall.priors);
+  LightUnknowns known(wall.light, wall.priors);
+  const VectorXd all = VectorXd::Ones(SeenWall::kLamps);
+  const std::vector<std::optional<SeenPlace>> near{wall.place(0), std::nullopt}, far{std::nullopt, wall.place(1)};
+  const std::vector<std::optional<SeenLight>> light{SeenLight{150, 1, 20, 5}, SeenLight{120, 1, 40, -8}};
+  known.learn(left.readings(near, light, kWidth_px, kHeight_px, SeenWall::kPoints, all));
+  known.learn(right.readings(far, light, kWidth_px, kHeight_px, SeenWall::kPoints, all));
+  const CameraInstrument *const one[] = {&left}, *const other[] = {&right}, *const both[] = {&left, &right};
+  const LightBudget budget = known.budget(1, all);
+  const CameraBudget of_left = budget_of(budget, one), of_right = budget_of(budget, other),
+                     all_of_it = budget_of(budget, both);
+  EXPECT_GT(of_right.response, 0);
+  EXPECT_NEAR(all_of_it.response, of_left.response + of_right.response, 1e-12);
+  EXPECT_NEAR(all_of_it.lens, of_left.lens + of_right.lens, 1e-12);
+  EXPECT_NEAR(all_of_it.lamps, of_left.lamps, 1e-12) << "counted once";
+  EXPECT_LT(all_of_it.other, of_left.other) << "what is the other camera's is not unexplained";
 }
 
 TEST(CameraInstrument, SaysNothingOfAKindOfLampThatItDidNotSee) {
@@ -162,14 +183,15 @@ TEST(CameraInstrument, SaysNothingOfAKindOfLampThatItDidNotSee) {
   ASSERT_EQ(found.responses.size(), 1u);
   EXPECT_EQ(found.responses[0].first, "amber");
 
-  EXPECT_FALSE(camera.of_goals(wall.rig, known, VectorXd::Ones(SeenWall::kLamps))) << "no goal";
+  const CameraInstrument* const each[] = {&camera};
+  EXPECT_FALSE(budget_of_goals(wall.rig, known, VectorXd::Ones(SeenWall::kLamps), each)) << "no goal";
   for (Point& point : wall.rig.points) point.goal_lx = 100;
-  const auto mean = camera.of_goals(wall.rig, known, VectorXd::Ones(SeenWall::kLamps));
+  const auto mean = budget_of_goals(wall.rig, known, VectorXd::Ones(SeenWall::kLamps), each);
   ASSERT_TRUE(mean);
   double sum = 0, of_lamps = 0;
   for (const CameraBudgetPart& part : kCameraBudgetParts) sum += *mean.*part.share;
   for (std::size_t p = 0; p < 2; ++p)
-    of_lamps += camera.shares_of(known.budget(p, VectorXd::Ones(SeenWall::kLamps))).lamps / 2;
+    of_lamps += budget_of(known.budget(p, VectorXd::Ones(SeenWall::kLamps)), each).lamps / 2;
   EXPECT_NEAR(sum, 1, 1e-9);
   EXPECT_NEAR(mean->lamps, of_lamps, 1e-12);
 }

@@ -95,7 +95,7 @@ TEST(CameraRun, LeavesOutPlacesWhoseBeamsAreFullAndCountsThem) {
   EXPECT_NEAR(static_cast<double>(overflow.full_places), static_cast<double>(places.size() - kept), 3);
   EXPECT_GE(overflow.places, 2 * places.size() - 6) << "hardly any is out of the picture of the camera that was found";
   std::size_t of_second = 0;
-  for (const LightReading& reading : run.readings(instrument, 0)) {
+  for (const LightReading& reading : run.readings(instrument, 0, run.curves())) {
     const bool second = reading.level[1] > 0;
     of_second += second;
     if (second) EXPECT_GT(places[reading.receiver].x_px, 155);

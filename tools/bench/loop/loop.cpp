@@ -45,11 +45,14 @@ struct Hand {
 /// How a camera's pictures are taken: with its lens and each kind of lamp as unknowns, or all by one factor.
 enum class Colour { by_kind, one_factor };
 
+/// Of the rig's cameras.
+enum class Cameras { none, first, all };
+
 struct Case {
   const char* method;
   bool meters;
   Hand hand;
-  bool camera = false;
+  Cameras cameras = Cameras::none;
   Colour colour = Colour::by_kind;
   bool known_paint = false;  ///< the truth's reflectances are those of the file
 };
@@ -60,11 +63,14 @@ constexpr Case kCases[] = {
     {"meters, 5 by hand", true, {5, Hand::Where::chosen}},
     {"meters, 5 at random", true, {5, Hand::Where::random}},
     {"8 by hand", false, {8, Hand::Where::chosen}},
-    {"meters, camera", true, {}, true},
-    {"camera, 1 by hand", false, {1, Hand::Where::chosen}, true},
-    {"camera, 1 by hand, one factor", false, {1, Hand::Where::chosen}, true, Colour::one_factor},
-    {"meters, camera, known paint", true, {}, true, Colour::by_kind, true},
-    {"camera, 1 by hand, known paint", false, {1, Hand::Where::chosen}, true, Colour::by_kind, true},
+    {"meters, camera", true, {}, Cameras::first},
+    {"camera, 1 by hand", false, {1, Hand::Where::chosen}, Cameras::first},
+    {"camera, 1 by hand, one factor", false, {1, Hand::Where::chosen}, Cameras::first, Colour::one_factor},
+    {"meters, all cameras", true, {}, Cameras::all},
+    {"all cameras, 3 by hand", false, {3, Hand::Where::chosen}, Cameras::all},
+    {"meters, camera, known paint", true, {}, Cameras::first, Colour::by_kind, true},
+    {"camera, 1 by hand, known paint", false, {1, Hand::Where::chosen}, Cameras::first, Colour::by_kind, true},
+    {"meters, all cameras, known paint", true, {}, Cameras::all, Colour::by_kind, true},
 };
 /// Of a reflectance that was measured.
 constexpr double kKnownPaint = 0.02;
@@ -83,10 +89,10 @@ LightPriors priors_of(const Rig& rig, const std::vector<double>& used) {
 struct MeasuredRig {
   MeterRun run;
   std::vector<double> used;  ///< levels of use, as sent
-  VectorXd truth_lx;         ///< of all lamps at those; at the rig's points, then at the camera's places
+  VectorXd truth_lx;         ///< of all lamps at those; at the rig's points, then at the cameras' places
   MatrixXd alone_lx;         ///< points × fixtures: of each alone at its level of use
   double rig_seconds = 0;    ///< that the run took
-  Photographed seen;         ///< each lamp at its level of use
+  std::vector<Photographed> seen;  ///< per camera: each lamp at its level of use
 };
 
 std::vector<double> levels_of_use(std::vector<double> brightest) {
@@ -100,21 +106,25 @@ Result<MeasuredRig> measure_rig(sim::World& world, const Session& session, const
   const RayScene true_rays(sim::true_scene(session.scene, rig, deviations));
   SteppedRig bench(world, seen.session.rig);
   MeasuredRig measured{MeterRun(rig, brightest, stated_lux), levels_of_use(brightest), {}, {}, 0, {}};
-  Photographer camera(seen, session, world, true_rays, deviations);
+  std::vector<Photographer> cameras;
+  for (std::size_t k = 0; k < seen.each.size(); ++k)
+    cameras.emplace_back(seen.each[k], k, session, world, true_rays, deviations);
   bench.measure(measured.run, levels_of_use(brightest));
   measured.rig_seconds = bench.seconds();
   std::vector<double> alone(rig.fixtures.size(), 0.0);
   const VectorXd dark_lx = bench.truth_lx(alone);
   measured.truth_lx = bench.truth_lx(measured.used) - dark_lx;
-  if (auto looked = camera.look(); !looked) return tl::unexpected(looked.error());
+  for (Photographer& camera : cameras)
+    if (auto looked = camera.look(); !looked) return tl::unexpected(looked.error());
   measured.alone_lx.resize(measured.truth_lx.size(), static_cast<Index>(rig.fixtures.size()));
   for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
     alone[f] = measured.used[f];
     measured.alone_lx.col(static_cast<Index>(f)) = bench.truth_lx(alone) - dark_lx;
-    if (auto taken = camera.take(f); !taken) return tl::unexpected(taken.error());
+    for (Photographer& camera : cameras)
+      if (auto taken = camera.take(f); !taken) return tl::unexpected(taken.error());
     alone[f] = 0;
   }
-  measured.seen = camera.taken();
+  for (const Photographer& camera : cameras) measured.seen.push_back(camera.taken());
   return measured;
 }
 
@@ -136,15 +146,15 @@ VectorXd levels_read(const MeasuredRig& measured, const std::vector<double>& bri
   return level;
 }
 
-/// What the camera saw, for a RigLight of the rig with its places.
-std::vector<LightReading> readings_of_camera(const Rig& rig, const MeasuredRig& measured,
-                                             const CameraInstrument& camera, const VectorXd& share, Colour colour) {
+/// What a camera saw, for a RigLight of the rig with its places.
+std::vector<LightReading> readings_of_camera(const SeenBy& by, const Photographed& seen, const CameraInstrument& camera,
+                                             const VectorXd& share, Colour colour) {
   std::vector<LightReading> readings;
-  for (std::size_t f = 0; f < measured.seen.of_lamp.size(); ++f) {
+  for (std::size_t f = 0; f < seen.of_lamp.size(); ++f) {
     const auto j = static_cast<Index>(f);
     if (!(share[j] > 0)) continue;
-    auto of_lamp = camera.readings(measured.seen.places, measured.seen.of_lamp[f], kCameraWidth_px, kCameraHeight_px,
-                                   rig.points.size(), share[j] * VectorXd::Unit(share.size(), j));
+    auto of_lamp = camera.readings(seen.places, seen.of_lamp[f], by.camera.width_px, by.camera.height_px,
+                                   by.first_point, share[j] * VectorXd::Unit(share.size(), j));
     for (LightReading& reading : of_lamp) {
       if (colour == Colour::one_factor) {
         std::fill(reading.showing.of_lamp.begin(), reading.showing.of_lamp.end(), camera.response_to(0));
@@ -163,7 +173,7 @@ Result<void> measure_by_hand(const Rig& rig, const MeasuredRig& measured, const 
   std::normal_distribution<double> normal;
   const double gain = std::exp(0.01 * normal(random));
   std::vector<std::size_t> held(places);
-  std::iota(held.begin(), held.end(), rig.points.size());  // the camera's places are no points to hold a meter at
+  std::iota(held.begin(), held.end(), rig.points.size());  // the cameras' places are no points to hold a meter at
   for (int k = 0; k < hand.readings; ++k) {
     std::size_t at = random() % rig.points.size();
     while (std::find(held.begin(), held.end(), at) != held.end()) at = random() % rig.points.size();
@@ -198,14 +208,14 @@ struct Errors {
   std::vector<double> share;         ///< of each goal's light, over all rigs
   std::vector<double> in_errors;     ///< the same over the stated standard error
   std::vector<double> worst_of_rig;  ///< per rig
-  std::vector<double> seen;          ///< as share, of goals that the camera sees
+  std::vector<double> seen;          ///< as share, of goals that a camera of the case sees
   CameraBudget budget;               ///< sums of the goals' shares
   int budgets = 0;
   std::vector<double> map, map_in_errors;  ///< of the places of the lux map, by a camera: as share and in_errors
 
-  /// seen: per point, by the camera.
+  /// cameras: of the case. seen_by_them: per point.
   void add(const Rig& rig, const VectorXd& truth_lx, const VectorXd& level, const RigLight& light,
-           const CameraInstrument* camera, const std::vector<bool>& seen_by_it) {
+           std::span<const CameraInstrument* const> cameras, const std::vector<bool>& seen_by_them) {
     double worst = 0;
     for (std::size_t p = 0; p < rig.points.size(); ++p) {
       if (!rig.points[p].goal_lx) continue;
@@ -214,8 +224,8 @@ struct Errors {
       share.push_back(std::abs(found.lux / truth - 1));
       in_errors.push_back(std::abs(found.lux - truth) / found.standard_error_lx);
       worst = std::max(worst, share.back());
-      if (seen_by_it[p]) seen.push_back(share.back());
-      if (camera) add(camera->shares_of(light.known().budget(p, level)));
+      if (seen_by_them[p]) seen.push_back(share.back());
+      if (!cameras.empty()) add(budget_of(light.known().budget(p, level), cameras));
     }
     worst_of_rig.push_back(worst);
   }
@@ -254,25 +264,40 @@ double percentile(std::vector<double> values, double share) {
   return values[at];
 }
 
-/// A rig as stated, for the cases without and with a camera, and for those who know its paint.
+/// A rig as stated, for the cases without and with cameras, and for those who know its paint.
 struct Stated {
   const Session& session;
   std::unique_ptr<const SeenRig> seen;  ///< stays where it is: lights of it point there
   std::vector<double> brightest, used;
-  std::optional<RigLight> meters, camera, camera_known_paint;
-  std::optional<CameraInstrument> instrument;  ///< of both the latter
-  std::vector<bool> goals_seen;                ///< per point: the camera sees it as a place
+  std::optional<RigLight> meters, cameras, cameras_known_paint;
+  std::vector<CameraInstrument> instruments;  ///< of both the latter, per camera
+
+  [[nodiscard]] std::size_t count(Cameras which) const {
+    return which == Cameras::none ? 0 : which == Cameras::first ? 1 : instruments.size();
+  }
+  [[nodiscard]] std::vector<const CameraInstrument*> of(Cameras which) const {
+    std::vector<const CameraInstrument*> of;
+    for (std::size_t k = 0; k < count(which); ++k) of.push_back(&instruments[k]);
+    return of;
+  }
+  /// Per point: one of these cameras sees it as a place.
+  [[nodiscard]] std::vector<bool> points_seen(Cameras which) const {
+    std::vector<bool> points;
+    for (const Point& point : session.rig.points) {
+      points.push_back(false);
+      for (std::size_t k = 0; k < count(which); ++k)
+        for (const SeenPlace& place : seen->each[k].places)
+          if (place.position_world_m == point.position_world_m) points.back() = true;
+    }
+    return points;
+  }
 
   [[nodiscard]] static Result<Stated> of(const Session& session, const ComputeOptions& compute) {
     const auto traced = compute_transport(session, compute);
     if (!traced) return tl::unexpected(traced.error());
     auto seen = see(session);
     if (!seen) return tl::unexpected(seen.error());
-    Stated stated{session, std::make_unique<const SeenRig>(std::move(*seen)), {}, {}, {}, {}, {}, {}, {}};
-    for (const Point& point : session.rig.points)
-      stated.goals_seen.push_back(
-          std::any_of(stated.seen->places.begin(), stated.seen->places.end(),
-                      [&](const SeenPlace& place) { return place.position_world_m == point.position_world_m; }));
+    Stated stated{session, std::make_unique<const SeenRig>(std::move(*seen)), {}, {}, {}, {}, {}, {}};
     const auto fixtures = static_cast<Index>(session.rig.fixtures.size());
     stated.brightest = brightest_levels(session.rig, traced->lux_per_level.leftCols(fixtures));
     stated.used = levels_of_use(stated.brightest);
@@ -280,14 +305,15 @@ struct Stated {
     if (!light) return tl::unexpected(light.error());
     stated.meters = std::move(*light);
     LightPriors priors = priors_of(session.rig, stated.used);
-    stated.instrument.emplace(session.rig, session.scene.materials.size(), priors);
-    auto with_camera = RigLight::of(stated.seen->session, priors, compute);
-    if (!with_camera) return tl::unexpected(with_camera.error());
+    for (std::size_t k = 0; k < stated.seen->each.size(); ++k)
+      stated.instruments.emplace_back(session.rig, session.scene.materials.size(), priors);
+    auto with_cameras = RigLight::of(stated.seen->session, priors, compute);
+    if (!with_cameras) return tl::unexpected(with_cameras.error());
     priors.reflectance = kKnownPaint;
-    auto known_paint = with_camera->with_priors(priors);
+    auto known_paint = with_cameras->with_priors(priors);
     if (!known_paint) return tl::unexpected(known_paint.error());
-    stated.camera = std::move(*with_camera);
-    stated.camera_known_paint = std::move(*known_paint);
+    stated.cameras = std::move(*with_cameras);
+    stated.cameras_known_paint = std::move(*known_paint);
     return stated;
   }
 };
@@ -300,8 +326,9 @@ struct Learnt {
 
 Result<Learnt> learn_case(const Stated& stated, const Case& how, const MeasuredRig& measured, std::uint64_t seed) {
   const Rig& rig = stated.session.rig;
-  Learnt learnt{*(how.known_paint ? stated.camera_known_paint
-                  : how.camera    ? stated.camera
+  const bool by_camera = how.cameras != Cameras::none;
+  Learnt learnt{*(how.known_paint ? stated.cameras_known_paint
+                  : by_camera     ? stated.cameras
                                   : stated.meters),
                 shares_of(rig, measured, how.meters)};
   std::vector<LightReading> readings;
@@ -309,15 +336,17 @@ Result<Learnt> learn_case(const Stated& stated, const Case& how, const MeasuredR
     readings = measured.run.readings();
     learnt.light.read_at(levels_read(measured, stated.brightest));
   }
-  if (how.camera) {
-    for (LightReading& reading : readings) reading.receiver += stated.seen->places.size();
-    const auto of_camera = readings_of_camera(rig, measured, *stated.instrument, learnt.share, how.colour);
+  if (by_camera)
+    for (LightReading& reading : readings) reading.receiver += stated.seen->places;
+  for (std::size_t k = 0; k < stated.count(how.cameras); ++k) {
+    const auto of_camera =
+        readings_of_camera(stated.seen->each[k], measured.seen[k], stated.instruments[k], learnt.share, how.colour);
     readings.insert(readings.end(), of_camera.begin(), of_camera.end());
   }
   if (!readings.empty())
     if (auto done = learnt.light.learn(readings); !done) return tl::unexpected(done.error());
-  if (auto done = measure_by_hand(rig, measured, how.hand, learnt.share, seed,
-                                  how.camera ? stated.seen->places.size() : 0, learnt.light);
+  if (auto done = measure_by_hand(rig, measured, how.hand, learnt.share, seed, by_camera ? stated.seen->places : 0,
+                                  learnt.light);
       !done)
     return tl::unexpected(done.error());
   return learnt;
@@ -347,12 +376,12 @@ std::vector<BenchRow> bench_loop(const BenchOptions& options) {
   compute.threads = options.threads;
   const auto stated = Stated::of(*session, compute);
   if (!stated) return failed(stated.error().detail);
-  std::fprintf(stderr, "the camera sees %zu places\n", stated->seen->places.size());
+  std::fprintf(stderr, "%zu cameras see %zu places\n", stated->seen->each.size(), stated->seen->places);
 
   std::vector<Errors> errors(std::size(kCases));
   std::vector<double> seconds(std::size(kCases), 0.0), stated_off_px, off_px;
   double rig_seconds = 0;
-  int camera_refused = 0;
+  int cameras_refused = 0;
   const int seeds = options.seeds.value_or(options.quick ? 2 : 20);
   for (int s = 0; s < seeds; ++s) {
     for (const bool known_paint : {false, true}) {
@@ -365,29 +394,34 @@ std::vector<BenchRow> bench_loop(const BenchOptions& options) {
       const auto measured = measure_rig(**world, *session, real, stated->brightest, stated->meters->stated_lux(), *stated->seen);
       if (!measured) return failed(measured.error().detail);
       rig_seconds = measured->rig_seconds;
-      stated_off_px.push_back(measured->seen.stated_off_px.value_or(NAN));
-      if (measured->seen.off_px) off_px.push_back(*measured->seen.off_px);
-      camera_refused += measured->seen.refused.empty() ? 0 : 1;
+      for (const Photographed& seen : measured->seen) {
+        stated_off_px.push_back(seen.stated_off_px.value_or(NAN));
+        if (seen.off_px) off_px.push_back(*seen.off_px);
+        cameras_refused += seen.refused.empty() ? 0 : 1;
+      }
       for (std::size_t c = 0; c < std::size(kCases); ++c) {
         if (kCases[c].known_paint != known_paint) continue;
         const auto started = std::chrono::steady_clock::now();
         const auto learnt = learn_case(*stated, kCases[c], *measured, real.seed);
         if (!learnt) return failed(learnt.error().detail);
         seconds[c] += std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count() / seeds;
-        errors[c].add(session->rig, measured->truth_lx, learnt->share, learnt->light,
-                      kCases[c].camera ? &*stated->instrument : nullptr, stated->goals_seen);
-        if (!kCases[c].camera) continue;
+        errors[c].add(session->rig, measured->truth_lx, learnt->share, learnt->light, stated->of(kCases[c].cameras),
+                      stated->points_seen(kCases[c].cameras));
         // The levels are those that the lamps were read at, so no dimmer adds to the error.
         const LampShares shares{learnt->share, VectorXd::Zero(learnt->share.size())};
-        errors[c].add_map(map_places(session->rig, learnt->light, view_of(stated->seen->camera), stated->seen->places,
-                                     session->rig.points.size(), shares),
-                          measured->truth_lx.tail(static_cast<Index>(stated->seen->places.size())));
+        for (std::size_t k = 0; k < stated->count(kCases[c].cameras); ++k) {
+          const SeenBy& by = stated->seen->each[k];
+          errors[c].add_map(
+              map_places(session->rig, learnt->light, view_of(by.camera), by.places, by.first_point, shares),
+              measured->truth_lx.segment(static_cast<Index>(by.first_point), static_cast<Index>(by.places.size())));
+        }
       }
     }
   }
   std::fprintf(stderr, "\n");
   std::vector<BenchRow> rows;
   for (std::size_t c = 0; c < std::size(kCases); ++c) {
+    const bool by_camera = kCases[c].cameras != Cameras::none;
     BenchRow row;
     row.case_name = session->rig.name + ", real";
     row.method = kCases[c].method;
@@ -401,11 +435,13 @@ std::vector<BenchRow> bench_loop(const BenchOptions& options) {
         {"rigs_within_8", fmt::format("{:.2f}", share_within(errors[c].worst_of_rig, 0.08))},
         {"rig_seconds", kCases[c].meters ? fmt::format("{:.0f}", rig_seconds) : ""},
         {"in_2_errors", fmt::format("{:.3f}", share_within(errors[c].in_errors, 2))},
-        {"camera_px", kCases[c].camera ? fmt::format("{:.2f}", percentile(off_px, 0.5)) : ""},
-        {"stated_px", kCases[c].camera ? fmt::format("{:.2f}", percentile(stated_off_px, 0.5)) : ""},
-        {"not_found", kCases[c].camera ? fmt::format("{}", camera_refused) : ""},
-        {"map_in_2_errors", kCases[c].camera ? fmt::format("{:.3f}", share_within(errors[c].map_in_errors, 2)) : ""},
-        {"map_95", kCases[c].camera ? fmt::format("{:.3f}", percentile(errors[c].map, 0.95)) : ""},
+        {"seen_95", by_camera ? fmt::format("{:.3f}", percentile(errors[c].seen, 0.95)) : ""},
+        {"seen_within_5", by_camera ? fmt::format("{:.3f}", share_within(errors[c].seen, 0.05)) : ""},
+        {"camera_px", by_camera ? fmt::format("{:.2f}", percentile(off_px, 0.5)) : ""},
+        {"stated_px", by_camera ? fmt::format("{:.2f}", percentile(stated_off_px, 0.5)) : ""},
+        {"not_found", by_camera ? fmt::format("{}", cameras_refused) : ""},
+        {"map_in_2_errors", by_camera ? fmt::format("{:.3f}", share_within(errors[c].map_in_errors, 2)) : ""},
+        {"map_95", by_camera ? fmt::format("{:.3f}", percentile(errors[c].map, 0.95)) : ""},
         {"of_lens", errors[c].of_variance(&CameraBudget::lens)},
         {"of_stray", errors[c].of_variance(&CameraBudget::stray)},
         {"of_response", errors[c].of_variance(&CameraBudget::response)},

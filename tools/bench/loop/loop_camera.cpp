@@ -12,7 +12,8 @@
 namespace luxrig {
 namespace {
 
-constexpr int kPlaces = 90;
+constexpr int kPlaces = 90;  // of all cameras, that are no points of the rig
+constexpr int kWidth_px = 640, kHeight_px = 400;
 constexpr int kPasses = 8;  // 25 pixels of a place: 200 samples
 constexpr double kBracket = 16;
 constexpr double kFieldOfView_rad = 1.2;
@@ -34,35 +35,48 @@ double apart_px(const RayScene& rays, const Camera& a, const Camera& b) {
   return *middle;
 }
 
+PictureCamera camera_of_the_room(const Session& session) {
+  std::vector<Joints> joints;
+  for (const Fixture& fixture : session.rig.fixtures) joints.push_back(fixture.joints);
+  const Camera view = automatic_camera(*session.rays, session.rig, joints, kWidth_px, kHeight_px, kFieldOfView_rad);
+  PictureCamera camera;
+  camera.name = "bench";
+  camera.position_world_m = view.eye_world_m;
+  camera.aim_world_m = view.target_world_m;
+  camera.vertical_fov_rad = view.vertical_fov_rad;
+  camera.width_px = view.width_px;
+  camera.height_px = view.height_px;
+  return camera;
+}
+
 }  // namespace
 
 Result<SeenRig> see(const Session& session) {
+  std::vector<PictureCamera> cameras = session.rig.cameras;
+  if (cameras.empty()) cameras.push_back(camera_of_the_room(session));
   SeenRig seen;
-  std::vector<Joints> joints;
-  for (const Fixture& fixture : session.rig.fixtures) joints.push_back(fixture.joints);
-  const Camera view =
-      automatic_camera(*session.rays, session.rig, joints, kCameraWidth_px, kCameraHeight_px, kFieldOfView_rad);
-  seen.camera.name = "bench";
-  seen.camera.position_world_m = view.eye_world_m;
-  seen.camera.aim_world_m = view.target_world_m;
-  seen.camera.vertical_fov_rad = view.vertical_fov_rad;
-  seen.camera.width_px = view.width_px;
-  seen.camera.height_px = view.height_px;
-  seen.places = seen_places(*session.rays, view, session.rig.points, kPlaces);
-  auto with = session_of(with_places(session.rig, seen.places));
+  std::vector<SeenPlace> all;
+  for (const PictureCamera& camera : cameras) {
+    auto places =
+        seen_places(*session.rays, view_of(camera), session.rig.points, kPlaces / static_cast<int>(cameras.size()));
+    seen.each.push_back({camera, places, session.rig.points.size() + all.size()});
+    all.insert(all.end(), places.begin(), places.end());
+  }
+  seen.places = all.size();
+  auto with = session_of(with_places(session.rig, all));
   if (!with) return tl::unexpected(Fault{Cause::invalid, "", with.error().front().text(), {}});
   seen.session = std::move(*with);
   return seen;
 }
 
-Photographer::Photographer(const SeenRig& seen, const Session& stated, const sim::World& world,
+Photographer::Photographer(const SeenBy& seen, std::size_t index, const Session& stated, const sim::World& world,
                            const RayScene& true_rays, const sim::Deviations& deviations)
     : seen_(seen),
       stated_(stated),
       world_(world),
       true_rays_(true_rays),
       seed_(deviations.seed),
-      truth_(sim::draw_camera(stated.rig, seen.camera, 0, deviations, &true_rays)) {}
+      truth_(sim::draw_camera(stated.rig, seen.camera, index, deviations, &true_rays)) {}
 
 Result<Picture> Photographer::bracket() {
   sim::Shot shot;

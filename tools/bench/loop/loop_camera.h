@@ -1,5 +1,5 @@
 #pragma once
-/// The bench's camera: one picture camera of a simulated rig, as wrong as the truth has it, and what follows from it.
+/// The bench's cameras: those of a simulated rig, as wrong as the truth has them, and what follows from their pictures.
 
 #include <cstdint>
 #include <optional>
@@ -14,13 +14,16 @@
 
 namespace luxrig {
 
-inline constexpr int kCameraWidth_px = 640, kCameraHeight_px = 400;
-
-/// What the camera sees of the rig as stated.
-struct SeenRig {
+/// What one camera sees of the rig as stated.
+struct SeenBy {
   PictureCamera camera;
   std::vector<SeenPlace> places;
-  Session session;  ///< of the rig with a point at each place, after its own
+  std::size_t first_point = 0;  ///< of its places, in SeenRig::session
+};
+struct SeenRig {
+  std::vector<SeenBy> each;  ///< the cameras of the rig file, or one that sees most of the room if it has none
+  std::size_t places = 0;    ///< of all
+  Session session;           ///< of the rig with a point at each place, after its own
 };
 [[nodiscard]] Result<SeenRig> see(const Session& session);
 
@@ -36,8 +39,9 @@ struct Photographed {
 class Photographer {
  public:
   /// All arguments outlive it.
-  Photographer(const SeenRig& seen, const Session& stated, const sim::World& world, const RayScene& true_rays,
-               const sim::Deviations& deviations);
+  /// index: of the camera, as its error is drawn.
+  Photographer(const SeenBy& seen, std::size_t index, const Session& stated, const sim::World& world,
+               const RayScene& true_rays, const sim::Deviations& deviations);
   /// With every lamp lit: finds the camera.
   [[nodiscard]] Result<void> look();
   /// With this fixture lit alone.
@@ -47,7 +51,7 @@ class Photographer {
  private:
   [[nodiscard]] Result<Picture> bracket();
 
-  const SeenRig& seen_;
+  const SeenBy& seen_;
   const Session& stated_;
   const sim::World& world_;
   const RayScene& true_rays_;

@@ -17,8 +17,8 @@
 namespace luxrig {
 namespace {
 
-/// Places that are no points of the rig; more teach little, and their light has to be traced.
-constexpr int kPlacesOfCamera = 80;
+/// Places of all cameras that are no points of the rig; more teach little, and their light has to be traced.
+constexpr int kPlacesOfCameras = 80;
 
 /// A picture takes seconds. The light is held meanwhile.
 Result<MergedPicture> look_while_held(CameraEye& eye, DaemonRig& daemon, const std::stop_token& stop) {
@@ -31,16 +31,9 @@ Result<MergedPicture> look_while_held(CameraEye& eye, DaemonRig& daemon, const s
   return picture;
 }
 
-}  // namespace
-
-std::vector<std::size_t> CameraView::points() const {
-  std::vector<std::size_t> points(places.size());
-  std::iota(points.begin(), points.end(), session->rig.points.size() - places.size());
-  return points;
-}
-
-Result<CameraView> camera_view(const Session& stated, const std::string& name, const Calibration* before,
-                               LightPriors& priors) {
+/// most: places that are no points of the rig.
+Result<CameraView> view_of_named(const Session& stated, const std::string& name, const Calibration* before, int most,
+                                 LightPriors& priors) {
   const std::vector<PictureCamera>& cameras = stated.rig.cameras;
   const auto named = std::find_if(cameras.begin(), cameras.end(), [&](const auto& one) { return one.name == name; });
   if (named == cameras.end()) {
@@ -53,9 +46,9 @@ Result<CameraView> camera_view(const Session& stated, const std::string& name, c
   if (before)
     for (const CalibratedCamera& found : before->cameras)
       if (found.name == name) start.found_before = view_of(*named, found);
-  std::vector<SeenPlace> places = seen_places(*stated.rays, start.stated, stated.rig.points, kPlacesOfCamera);
+  std::vector<SeenPlace> places = seen_places(*stated.rays, start.stated, stated.rig.points, most);
   if (start.found_before) {
-    auto from_there = seen_places(*stated.rays, *start.found_before, stated.rig.points, kPlacesOfCamera);
+    auto from_there = seen_places(*stated.rays, *start.found_before, stated.rig.points, most);
     // From within a wall, or above the ceiling, it would see little.
     if (2 * from_there.size() >= places.size())
       places = std::move(from_there);
@@ -63,51 +56,120 @@ Result<CameraView> camera_view(const Session& stated, const std::string& name, c
       start.found_before.reset();
   }
   if (places.empty()) return refusal(fmt::format("camera \"{}\" sees no matt surface to measure light on", name));
-  auto session = session_of(with_places(stated.rig, places));
-  if (!session) return refusal(session.error().front().text());
-  return CameraView{static_cast<std::size_t>(named - cameras.begin()), start, std::move(places),
-                    std::make_unique<const Session>(std::move(*session)),
+  return CameraView{static_cast<std::size_t>(named - cameras.begin()), start, std::move(places), 0,
                     CameraInstrument(stated.rig, stated.scene.materials.size(), priors)};
 }
 
-Result<MeasuredByCamera> measure_by_camera(const Session& stated, const CameraView& view, DaemonRig& daemon,
-                                           std::span<const double> brightest, std::vector<LampCurve>& curves,
-                                           const std::stop_token& stop) {
-  const Rig& rig = stated.rig;
-  const PictureCamera& camera = rig.cameras[view.camera];
-  auto eye = camera_eye(rig, view.camera, daemon.sim_control());
-  if (!eye) return tl::unexpected(eye.error());
-  CameraRun run(rig, *stated.rays, view.start, view.places, brightest, curves);
+/// A camera at work.
+struct Photographing {
+  const CameraView& view;
+  std::unique_ptr<CameraEye> eye;
+  CameraRun run;
+  std::optional<Fault> refused;  ///< why it was not found
+};
+
+std::string words_of(const Photographing& one, const Rig& rig) {
+  const std::string& name = rig.cameras[one.view.camera].name;
+  if (one.refused) return fmt::format("Camera \"{}\" is left out: {}.", name, one.refused->detail);
+  const FoundCamera& found = *one.run.found();
+  return fmt::format(
+      "Camera \"{}\" shows edges of the room {:.1f} px off where {} it; where it is now found to be, {:.1f} px, and "
+      "places to {:.1f} px.",
+      name, found.stated_off_px, one.run.found_as_before() ? "the last calibration found" : "the rig file has",
+      found.off_px, found.standard_error_px);
+}
+
+}  // namespace
+
+std::vector<std::size_t> CameraViews::points() const {
+  std::size_t places = 0;
+  for (const CameraView& view : each) places += view.places.size();
+  std::vector<std::size_t> points(places);
+  if (session) std::iota(points.begin(), points.end(), session->rig.points.size() - places);
+  return points;
+}
+
+std::vector<const CameraInstrument*> CameraViews::instruments() const {
+  std::vector<const CameraInstrument*> instruments;
+  for (const CameraView& view : each) instruments.push_back(&view.instrument);
+  return instruments;
+}
+
+Result<CameraViews> camera_views(const Session& stated, std::span<const std::string> names, const Calibration* before,
+                                 LightPriors& priors) {
+  CameraViews views;
+  std::vector<SeenPlace> all;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    if (std::find(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(k), names[k]) - names.begin() <
+        static_cast<std::ptrdiff_t>(k))
+      return refusal(fmt::format("camera \"{}\" is named twice", names[k]));
+    auto view = view_of_named(stated, names[k], before, kPlacesOfCameras / static_cast<int>(names.size()), priors);
+    if (!view) return tl::unexpected(view.error());
+    view->first_point = stated.rig.points.size() + all.size();
+    all.insert(all.end(), view->places.begin(), view->places.end());
+    views.each.push_back(std::move(*view));
+  }
+  auto session = session_of(with_places(stated.rig, all));
+  if (!session) return refusal(session.error().front().text());
+  views.session = std::make_unique<const Session>(std::move(*session));
+  return views;
+}
+
+Result<MeasuredByCameras> measure_by_cameras(const Session& stated, const CameraViews& views, DaemonRig& daemon,
+                                             std::span<const double> brightest, std::vector<LampCurve>& curves,
+                                             const std::stop_token& stop) {
+  std::vector<Photographing> all;
+  for (const CameraView& view : views.each) {
+    auto eye = camera_eye(stated.rig, view.camera, daemon.sim_control());
+    if (!eye) return tl::unexpected(eye.error());
+    all.push_back({view, std::move(*eye), {stated.rig, *stated.rays, view.start, view.places, brightest, curves}, {}});
+  }
   const Progress progress = progress_line("photographing");
-  while (const auto level = run.next()) {
-    if (progress) progress(static_cast<double>(run.done()) / static_cast<double>(run.steps()));
-    const std::string words = run.words_of_next();
+  std::vector<Photographing*> left;
+  for (Photographing& one : all) left.push_back(&one);
+  while (const auto level = left.front()->run.next()) {
+    const CameraRun& first = left.front()->run;
+    if (progress) progress(static_cast<double>(first.done()) / static_cast<double>(first.steps()));
+    const std::string words = first.words_of_next();
     const auto during = [&](const Fault& fault) {
       return tl::unexpected(Fault{fault.cause, "", words + ": " + fault.detail, {}});
     };
     const auto sent = daemon.light(*level, stop);
     if (!sent) return during(sent.error());
-    const auto picture = look_while_held(**eye, daemon, stop);
-    if (!picture) return during(picture.error());
-    if (auto taken = run.take(*sent, *picture); !taken) return during(taken.error());
+    for (Photographing* const one : left) {
+      const auto picture = look_while_held(*one->eye, daemon, stop);
+      if (!picture) return during(picture.error());
+      if (auto taken = one->run.take(*sent, *picture); !taken) one->refused = taken.error();
+    }
+    const Fault last_refusal = left.back()->refused.value_or(Fault{});
+    std::erase_if(left, [](const Photographing* one) { return one->refused.has_value(); });
+    if (left.empty()) return during(last_refusal);
   }
-  const FoundCamera& found = *run.found();
-  fmt::print(
-      "Camera \"{}\" shows edges of the room {:.1f} px off where {} it; where it is now found to be, {:.1f} px, and "
-      "places to {:.1f} px.\n",
-      camera.name, found.stated_off_px, run.found_as_before() ? "the last calibration found" : "the rig file has",
-      found.off_px, found.standard_error_px);
-  curves = run.curves();
-  return MeasuredByCamera{run.readings(view.instrument, rig.points.size()), found, run.overflow()};
+  for (std::size_t f = 0; f < curves.size(); ++f)
+    for (const Photographing* const one : left)
+      if (curves[f].of_level.empty()) curves[f] = one->run.curves()[f];
+  MeasuredByCameras measured;
+  for (const Photographing& one : all) {
+    fmt::print("{}\n", words_of(one, stated.rig));
+    measured.each.emplace_back();
+    if (one.refused) continue;
+    measured.each.back() = MeasuredByCamera{*one.run.found(), one.run.overflow()};
+    auto readings = one.run.readings(one.view.instrument, one.view.first_point, curves);
+    measured.readings.insert(measured.readings.end(), std::make_move_iterator(readings.begin()),
+                             std::make_move_iterator(readings.end()));
+  }
+  return measured;
 }
 
-void put_cameras(const Rig& rig, const CameraView* view, const MeasuredByCamera* measured, const RigLight& light,
+void put_cameras(const Rig& rig, const CameraViews& views, const MeasuredByCameras& measured, const RigLight& light,
                  const Calibration* before, Calibration& found) {
-  if (view && measured) {
+  for (std::size_t k = 0; k < measured.each.size(); ++k) {
+    if (!measured.each[k]) continue;
+    const CameraView& view = views.each[k];
     CalibratedCamera camera;
-    camera.name = rig.cameras[view->camera].name;
-    put_view(view->start.stated, measured->found.camera, measured->found.covariance, camera);
-    view->instrument.put(rig, light.known(), camera);
+    camera.name = rig.cameras[view.camera].name;
+    put_view(view.start.stated, measured.each[k]->found.camera, measured.each[k]->found.covariance, camera);
+    view.instrument.put(rig, light.known(), camera);
     found.cameras.push_back(std::move(camera));
   }
   if (!before) return;
@@ -117,8 +179,7 @@ void put_cameras(const Rig& rig, const CameraView* view, const MeasuredByCamera*
       found.cameras.push_back(camera);
 }
 
-std::string budget_words(const Rig& rig, const CameraView& view, const RigLight& light, const Eigen::VectorXd& level) {
-  const auto budget = view.instrument.of_goals(rig, light.known(), level);
+std::string budget_words(const std::optional<CameraBudget>& budget) {
   std::string words;
   for (const CameraBudgetPart& part : kCameraBudgetParts)
     if (budget && *budget.*part.share >= 0.005)
@@ -140,7 +201,7 @@ Result<LuxMap> lux_map_of(const Session& stated, const CameraView& view, const C
   for (std::size_t f = 0; f < level.size(); ++f)
     if (const double share = shares.share[static_cast<Eigen::Index>(f)]; share > 0)
       map.shares.emplace_back(stated.rig.fixtures[f].name, share);
-  map.places = map_places(stated.rig, light, camera, view.places, view.points().front(), shares);
+  map.places = map_places(stated.rig, light, camera, view.places, view.first_point, shares);
   const auto pictures = map_pictures(*session, camera, map.places, shares.share, compute.of_part());
   if (!pictures) return tl::unexpected(pictures.error());
   map.lux_png = false_colour_png(pictures->lux, "light", {});

@@ -1,5 +1,5 @@
 #pragma once
-/// Measures a daemon's rig by one of its cameras.
+/// Measures a daemon's rig by its cameras.
 
 #include <memory>
 #include <optional>
@@ -20,43 +20,54 @@
 
 namespace luxrig {
 
-/// What a camera of the rig sees from where it is looked for. Its places are points of `session`, after the rig's own.
+/// What a camera of the rig sees from where it is looked for.
 struct CameraView {
   std::size_t camera = 0;  ///< of the rig
   CameraStart start;
   std::vector<SeenPlace> places;
-  std::unique_ptr<const Session> session;  ///< stays where it is: a RigLight of it points there
+  std::size_t first_point = 0;  ///< of its places, in CameraViews::session
   CameraInstrument instrument;
+};
+
+/// The places of all cameras are points of `session`, after the rig's own.
+struct CameraViews {
+  std::vector<CameraView> each;
+  std::unique_ptr<const Session> session;  ///< stays where it is: a RigLight of it points there
 
   /// The points that are places.
   [[nodiscard]] std::vector<std::size_t> points() const;
+  [[nodiscard]] std::vector<const CameraInstrument*> instruments() const;
 };
 
-/// Adds the camera's unknowns to the priors. before: an earlier calibration of this rig, if there is one; the camera is
-/// looked for from where it was then. Refused if the rig has no such camera, or it sees no matt surface.
-[[nodiscard]] Result<CameraView> camera_view(const Session& stated, const std::string& name, const Calibration* before,
-                                             LightPriors& priors);
+/// Adds the cameras' unknowns to the priors. before: an earlier calibration of this rig, if there is one; a camera is
+/// looked for from where it was then. Refused if the rig has no such camera, or one sees no matt surface, or is named
+/// twice.
+[[nodiscard]] Result<CameraViews> camera_views(const Session& stated, std::span<const std::string> names,
+                                               const Calibration* before, LightPriors& priors);
 
 struct MeasuredByCamera {
-  std::vector<LightReading> readings;  ///< for a RigLight of the view's session
   FoundCamera found;
   CameraOverflow overflow;
 };
+struct MeasuredByCameras {
+  std::vector<LightReading> readings;                 ///< for a RigLight of the views' session
+  std::vector<std::optional<MeasuredByCamera>> each;  ///< in the order of the views; none = the camera was not found
+};
 
-/// Lights the lamps one by one and photographs them; adds curves that are not known yet.
-[[nodiscard]] Result<MeasuredByCamera> measure_by_camera(const Session& stated, const CameraView& view,
-                                                         DaemonRig& daemon, std::span<const double> brightest,
-                                                         std::vector<LampCurve>& curves, const std::stop_token& stop);
+/// Lights the lamps one by one, and photographs each with all cameras; adds curves that are not known yet. A camera that
+/// cannot be found in the room is left out, in words. Refused if that is so of all.
+[[nodiscard]] Result<MeasuredByCameras> measure_by_cameras(const Session& stated, const CameraViews& views,
+                                                           DaemonRig& daemon, std::span<const double> brightest,
+                                                           std::vector<LampCurve>& curves, const std::stop_token& stop);
 
-/// Puts what was found of the camera into the calibration, and of all other cameras what `before` says of them.
-void put_cameras(const Rig& rig, const CameraView* view, const MeasuredByCamera* measured, const RigLight& light,
+/// Puts what was found of the cameras into the calibration, and of all other cameras what `before` says of them.
+void put_cameras(const Rig& rig, const CameraViews& views, const MeasuredByCameras& measured, const RigLight& light,
                  const Calibration* before, Calibration& found);
 
 /// Why the light at the goals is not better known, for a person: "response to each kind of lamp 40 %, …".
-[[nodiscard]] std::string budget_words(const Rig& rig, const CameraView& view, const RigLight& light,
-                                       const Eigen::VectorXd& level);
+[[nodiscard]] std::string budget_words(const std::optional<CameraBudget>& budget);
 
-/// The light where the camera sees it, with both pictures. level: of the lamps, as sent. found: the calibration.
+/// The light where a camera sees it, with both pictures. level: of the lamps, as sent. found: the calibration.
 [[nodiscard]] Result<LuxMap> lux_map_of(const Session& stated, const CameraView& view, const Camera& camera,
                                         const RigLight& light, std::span<const LampCurve> curves,
                                         std::span<const double> level, const Calibration& found,

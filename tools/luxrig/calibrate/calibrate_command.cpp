@@ -39,11 +39,11 @@ struct CalibrateArguments {
   ClientArguments client;
   SimArguments sim;
   ComputeOptions compute;
-  bool meters = false, hand = false;  ///< neither, and no camera = meters
+  bool meters = false, hand = false;  ///< neither, and no cameras = meters
   std::string hours = "closed";
   double open_minutes = 28;
-  std::optional<std::string> camera;                ///< name
-  bool no_heads = false;                            ///< with a camera: pan-tilt heads are left as they are
+  std::vector<std::string> cameras;                 ///< names
+  bool no_heads = false;                            ///< with cameras: pan-tilt heads are left as they are
   std::optional<std::filesystem::path> meter_file;  ///< of the meter in the hand
   std::optional<std::filesystem::path> file;        ///< none = calibration.json beside the rig file
 };
@@ -90,15 +90,12 @@ struct Measuring {
   HandLevels levels;
   std::vector<LampCurve> curves;  ///< per fixture
   std::stop_token stop;
-  const CameraView* camera =
-      nullptr;       ///< if one is used: its places are points of `light`, but none to hold a meter at
+  const CameraViews& cameras;  ///< that are used: their places are points of `light`, but none to hold a meter at
   bool any = false;  ///< something is measured
   int by_hand = 0;   ///< readings
-  std::optional<MeasuredByCamera> seen{};
+  MeasuredByCameras seen{};
 
-  [[nodiscard]] std::vector<std::size_t> no_points() const {
-    return camera ? camera->points() : std::vector<std::size_t>{};
-  }
+  [[nodiscard]] std::vector<std::size_t> no_points() const { return cameras.points(); }
 };
 
 /// All lamps at once, so dim that few limits are in the way; the daemon keeps them.
@@ -184,24 +181,26 @@ Result<void> by_hanging_meters(Measuring& measuring) {
   return measuring.light.learn(readings);
 }
 
-Result<void> by_camera(Measuring& measuring) {
-  auto seen = measure_by_camera(measuring.session, *measuring.camera, measuring.daemon, measuring.levels.brightest,
-                                measuring.curves, measuring.stop);
+Result<void> by_cameras(Measuring& measuring) {
+  auto seen = measure_by_cameras(measuring.session, measuring.cameras, measuring.daemon, measuring.levels.brightest,
+                                 measuring.curves, measuring.stop);
   if (!seen) return tl::unexpected(seen.error());
   measuring.any = measuring.any || !seen->readings.empty();
   measuring.seen = std::move(*seen);
-  return measuring.light.learn(measuring.seen->readings);
+  return measuring.light.learn(measuring.seen.readings);
 }
 
-/// How the rig's heads hang and turn, told as it is found.
+/// How the rig's heads hang and turn, by the first camera, told as it is found.
 Result<std::vector<MeasuredHead>> by_heads(const Measuring& measuring) {
   const Rig& rig = measuring.session.rig;
   if (const std::string why = why_no_heads(rig); !why.empty()) {
     fmt::print("Heads are not measured: {}.\n", why);
     return std::vector<MeasuredHead>{};
   }
-  auto heads = measure_heads(measuring.session, measuring.camera->camera, measuring.seen->found.camera,
-                             measuring.daemon, measuring.stop);
+  const auto& each = measuring.seen.each;
+  const auto first = std::find_if(each.begin(), each.end(), [](const auto& one) { return one.has_value(); });
+  const CameraView& view = measuring.cameras.each[static_cast<std::size_t>(first - each.begin())];
+  auto heads = measure_heads(measuring.session, view.camera, (*first)->found.camera, measuring.daemon, measuring.stop);
   if (heads)
     for (const MeasuredHead& head : *heads) fmt::print("{}\n", words_of(rig, head));
   return heads;
@@ -221,18 +220,27 @@ std::optional<Calibration> found_before(const std::filesystem::path& file, const
   return std::move(*before);
 }
 
-/// The light of the look that the daemon went back to; of every lamp at its level of use if that look is dark.
-Result<LuxMap> map_of(const Measuring& measuring, std::span<const double> look, const Calibration& found,
-                      const ComputeOptions& compute) {
+/// Of each camera that measured: the light of the look that the daemon went back to; of every lamp at its level of use if
+/// that look is dark.
+std::vector<LuxMap> maps_of(const Measuring& measuring, std::span<const double> look, const Calibration& found,
+                            const ComputeOptions& compute) {
   std::vector<double> level(look.begin(), look.end());
   const bool lit = std::any_of(level.begin(), level.end(), [](double one) { return one > 0; });
   if (!lit)
     for (std::size_t f = 0; f < level.size(); ++f) level[f] = level_of_share(measuring.curves[f].of_level, kLevelOfUse);
-  auto map = lux_map_of(measuring.session, *measuring.camera, measuring.seen->found.camera, measuring.light,
-                        measuring.curves, level, found, compute);
-  if (map)
+  std::vector<LuxMap> maps;
+  for (std::size_t k = 0; k < measuring.seen.each.size(); ++k) {
+    if (!measuring.seen.each[k]) continue;
+    auto map = lux_map_of(measuring.session, measuring.cameras.each[k], measuring.seen.each[k]->found.camera,
+                          measuring.light, measuring.curves, level, found, compute);
+    if (!map) {  // what was measured is still worth its report
+      fmt::print(stderr, "luxrig: there is no map of the light: {}\n", map.error().detail);
+      continue;
+    }
     map->light = lit ? "the look in force" : fmt::format("every lamp at {:.0f} % of its light", 100 * kLevelOfUse);
-  return map;
+    maps.push_back(std::move(*map));
+  }
+  return maps;
 }
 
 std::string place_words(const Point& point) {
@@ -316,7 +324,7 @@ Result<void> by_hand(Measuring& measuring, const std::optional<std::filesystem::
 }
 
 /// calibration.json -> calibration-report.html
-std::filesystem::path beside(const std::filesystem::path& file, const char* ending) {
+std::filesystem::path beside(const std::filesystem::path& file, const std::string& ending) {
   return file.parent_path() / (file.stem().string() + ending);
 }
 
@@ -342,9 +350,7 @@ void print_report(const Measuring& measuring, const GoalError& before, const Cal
   }
   fmt::print("{}{}\nThe light at {} goals was known to {}. Now it is known to {}.\n", lamps.text(), note, before.goals,
              known_words(before), known_words(measuring.light.error_of_goals(measuring.levels.use)));
-  if (measuring.camera)
-    fmt::print("What is left of its variance: {}.\n",
-               budget_words(rig, *measuring.camera, measuring.light, measuring.levels.use));
+  if (told.variance) fmt::print("What is left of its variance: {}.\n", budget_words(told.variance));
   if (told.to_settle.empty()) return;
   std::string names;
   for (const std::string& point : told.to_settle) names += (names.empty() ? "\"" : ", \"") + point + "\"";
@@ -357,14 +363,14 @@ int run_calibrate(const CalibrateArguments& arguments) {
   const auto session = open_stated_session(arguments.rig);
   if (!session) return report(session.error());
   const Rig& rig = session->rig;
-  const bool meters = arguments.meters || (!arguments.hand && !arguments.camera);
+  const bool meters = arguments.meters || (!arguments.hand && arguments.cameras.empty());
   if (meters && rig.luxmeters.empty()) {
     fmt::print(stderr,
                "luxrig: the rig has no [[luxmeter]] to measure with; --hand asks for readings of one in your hand\n");
     return kExitBadInput;
   }
   const bool open = arguments.hours == "open";
-  if (open && (arguments.hand || arguments.camera)) {
+  if (open && (arguments.hand || !arguments.cameras.empty())) {
     fmt::print(stderr, "luxrig: by hand and by camera, lamps go on alone: that takes --hours closed\n");
     return kExitBadInput;
   }
@@ -385,13 +391,14 @@ int run_calibrate(const CalibrateArguments& arguments) {
   TerminalWatch terminal;
   compute.watch.tell = terminal.tell();
   LightPriors priors = usual_priors(rig);
-  std::optional<CameraView> view;
-  if (arguments.camera) {
-    auto seen = camera_view(*session, *arguments.camera, earlier ? &*earlier : nullptr, priors);
+  CameraViews views;
+  if (!arguments.cameras.empty()) {
+    auto seen = camera_views(*session, arguments.cameras, earlier ? &*earlier : nullptr, priors);
     if (!seen) return report(seen.error());
-    view = std::move(*seen);
+    views = std::move(*seen);
   }
-  auto light = RigLight::of(view ? *view->session : *session, priors, compute);
+  const Session& with_places = views.session ? *views.session : *session;
+  auto light = RigLight::of(with_places, priors, compute);
   if (!light) return report(light.error());
   Measuring measuring{*session,
                       *daemon,
@@ -400,7 +407,7 @@ int run_calibrate(const CalibrateArguments& arguments) {
                        brightest_levels(rig, light->stated_lux())},
                       std::vector<LampCurve>(rig.fixtures.size()),
                       stop,
-                      view ? &*view : nullptr,
+                      views,
                       false};
   const RigLight before = *light;
   const auto look = daemon->levels_now();
@@ -410,10 +417,11 @@ int run_calibrate(const CalibrateArguments& arguments) {
             open ? by_meters_in_open_hours(measuring, arguments.open_minutes) : by_hanging_meters(measuring);
         !measured)
       return report(measured.error());
-  if (view)
-    if (auto measured = by_camera(measuring); !measured) return report(measured.error());
+  const bool seen = !views.each.empty();
+  if (seen)
+    if (auto measured = by_cameras(measuring); !measured) return report(measured.error());
   std::vector<MeasuredHead> heads;
-  if (view && !arguments.no_heads) {
+  if (seen && !arguments.no_heads) {
     auto measured = by_heads(measuring);
     if (!measured) return report(measured.error());
     heads = std::move(*measured);
@@ -429,29 +437,27 @@ int run_calibrate(const CalibrateArguments& arguments) {
   Calibration found = calibration_of(*session, *light, measuring.curves, utc_now());
   found.simulated = world;
   put_heads(rig, heads, earlier ? &*earlier : nullptr, found);
-  put_cameras(rig, measuring.camera, measuring.seen ? &*measuring.seen : nullptr, *light, earlier ? &*earlier : nullptr,
-              found);
+  put_cameras(rig, views, measuring.seen, *light, earlier ? &*earlier : nullptr, found);
   if (auto written = write_file(file, to_json(found)); !written) return report(written.error());
-  CalibrationReport told =
-      report_of(view ? *view->session : *session, before, *light, std::move(found), kLevelOfUse, measuring.no_points());
+  CalibrationReport told = report_of(with_places, before, *light, std::move(found), kLevelOfUse, measuring.no_points());
   if (meters) told.by.emplace_back("luxmeters that hang");
-  if (view) told.by.emplace_back("camera \"" + *arguments.camera + "\"");
+  for (std::size_t k = 0; k < measuring.seen.each.size(); ++k) {
+    if (!measuring.seen.each[k]) continue;
+    told.by.emplace_back("camera \"" + arguments.cameras[k] + "\"");
+    told.seen.push_back({arguments.cameras[k], measuring.seen.each[k]->overflow});
+  }
   if (arguments.hand) told.by.emplace_back("a luxmeter in the hand");
-  if (view) {
-    told.seen = {*arguments.camera, view->instrument.of_goals(rig, light->known(), measuring.levels.use),
-                 measuring.seen->overflow};
-    auto map = map_of(measuring, *look, told.found, compute);
-    if (map)
-      told.map = std::move(*map);
-    else  // what was measured is still worth its report
-      fmt::print(stderr, "luxrig: there is no map of the light: {}\n", map.error().detail);
+  if (seen) {
+    told.variance = budget_of_goals(rig, light->known(), measuring.levels.use, views.instruments());
+    told.maps = maps_of(measuring, *look, told.found, compute);
   }
   const auto page = beside(file, "-report.html");
   std::vector<std::pair<std::filesystem::path, std::string>> files{{page, to_html(told)},
                                                                    {beside(file, "-report.json"), to_json(told)}};
-  if (told.map) {
-    files.emplace_back(beside(file, "-lux.png"), told.map->lux_png);
-    files.emplace_back(beside(file, "-lux-error.png"), told.map->error_png);
+  for (std::size_t k = 0; k < told.maps.size(); ++k) {
+    const std::string which = k == 0 ? "" : fmt::format("-{}", k + 1);
+    files.emplace_back(beside(file, "-lux" + which + ".png"), told.maps[k].lux_png);
+    files.emplace_back(beside(file, "-lux-error" + which + ".png"), told.maps[k].error_png);
   }
   for (const auto& [name, bytes] : files)
     if (auto written = write_file(name, bytes); !written) return report(written.error());
@@ -478,9 +484,9 @@ Action declare_calibrate(CLI::App& command) {
       "by a luxmeter in your hand: it says where to hold it, here and on the daemon's page; the first reading counts");
   command
       .add_option(
-          "--camera", calibrate->camera,
-          "by this [[camera]] of the rig, with at least one reading of a luxmeter; pan-tilt heads too: how they "
-          "hang and turn")
+          "--camera", calibrate->cameras,
+          "by this [[camera]] of the rig, with at least one reading of a luxmeter; several times for several cameras; "
+          "by the first also how pan-tilt heads hang and turn")
       ->type_name("NAME");
   command.add_flag("--no-heads", calibrate->no_heads, "with --camera: do not turn the rig's pan-tilt heads");
   command.add_option("--meter-file", calibrate->meter_file,

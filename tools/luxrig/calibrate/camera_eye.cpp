@@ -19,6 +19,8 @@ constexpr int kLongestPicture_s = 300;
 /// Each exposure of a bracket over the next shorter one.
 constexpr double kBracketStep = 16;
 constexpr int kSimulatedExposures = 2, kRealExposures = 3;
+/// Of a place, 25 pixels are read.
+constexpr int kSimulatedPasses = 8;
 /// Longer, a person in the room would move.
 constexpr double kLongestExposure_s = 0.5;
 
@@ -38,9 +40,10 @@ class SimulatedEye final : public CameraEye {
     double underexposed = 1;
     for (int k = 0; k < kSimulatedExposures; ++k, underexposed *= kBracketStep) {
       if (stop.stop_requested()) return tl::unexpected(Fault{Cause::cancelled, "", "stopped", {}});
-      const auto answer =
-          http_get(control_, fmt::format("/picture?camera={}&underexposed={}", as_query(camera_), underexposed),
-                   kLongestPicture_s);
+      const auto answer = http_get(control_,
+                                   fmt::format("/picture?camera={}&underexposed={}&passes={}", as_query(camera_),
+                                               underexposed, kSimulatedPasses),
+                                   kLongestPicture_s);
       if (!answer || answer->status != 200)
         return tl::unexpected(Fault{Cause::network, camera_, "the simulated rig gives no picture", {}});
       auto picture = picture_from_pfm(answer->body);
