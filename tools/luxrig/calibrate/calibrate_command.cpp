@@ -196,10 +196,7 @@ Result<void> by_camera(Measuring& measuring) {
 /// How the rig's heads hang and turn, told as it is found.
 Result<std::vector<MeasuredHead>> by_heads(const Measuring& measuring) {
   const Rig& rig = measuring.session.rig;
-  if (const std::string why = why_no_heads(rig); !why.empty()) {
-    fmt::print("Heads are not measured: {}.\n", why);
-    return std::vector<MeasuredHead>{};
-  }
+  if (const std::string dim = limited_light_of(rig); !dim.empty()) fmt::print("Heads are turned {}.\n", dim);
   auto heads = measure_heads(measuring.session, measuring.camera->camera, measuring.seen->found.camera,
                              measuring.daemon, measuring.stop);
   if (heads)
