@@ -92,6 +92,10 @@ JointRange with_run_up(const JointRange& range) {
   return inner;
 }
 
+bool may_aim(const HeadSetup& setup, const Joints& aim, const Approach& from) {
+  return !setup.barred || !(setup.barred(aim) || setup.barred(run_up_to(aim, from)));
+}
+
 HeadSetup head_setup(const Rig& rig, std::size_t fixture, const HeadPriors& priors) {
   const Fixture& head = rig.fixtures[fixture];
   HeadSetup setup;
@@ -134,6 +138,7 @@ std::vector<Joints> search_aims(const SeenSurface& surface, const RayScene& rays
     for (const HeadPose& head : heads) {
       const auto joints = head.joints_towards(places[p].position_world_m - head.pivot_world_m(), {}, range, {});
       if (!joints || std::abs(std::sin(joints->tilt_rad)) < std::sin(kLeastSearchTilt_rad)) continue;
+      if (!may_aim(setup, *joints, {})) continue;
       candidates.push_back({*joints, kinds_that_show(surface, rays, heads, *joints)});
     }
   std::vector<Joints> aims;

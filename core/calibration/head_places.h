@@ -2,6 +2,7 @@
 /// Places in a camera's picture that a head can be aimed at to see where its beam truly falls, and the joints to begin
 /// with.
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -25,6 +26,7 @@ struct HeadSetup {
   double pan_speed_rad_s = 1, tilt_speed_rad_s = 1;
   double beam_radius_rad = 0;  ///< half angle within which its light is above a third of its peak
   HeadPriors priors;
+  std::function<bool(const Joints&)> barred{};  ///< sent there, it would be refused (keep-out zones); empty = nowhere
 };
 
 /// Of a head of the rig, as its file states it.
@@ -42,5 +44,11 @@ struct HeadSetup {
 [[nodiscard]] JointRange with_run_up(const JointRange& range);
 /// Longer than the play of any gear.
 inline constexpr double kRunUp_rad = rad_from_deg(3);
+/// Where a head is sent first, so that it comes to its aim from the wanted side, through all play.
+[[nodiscard]] inline Joints run_up_to(const Joints& aim, const Approach& from) {
+  return {aim.pan_rad - from.pan * kRunUp_rad, aim.tilt_rad - from.tilt * kRunUp_rad, aim.beam_rad};
+}
+/// Neither the aim nor its run-up is barred.
+[[nodiscard]] bool may_aim(const HeadSetup& setup, const Joints& aim, const Approach& from);
 
 }  // namespace luxrig

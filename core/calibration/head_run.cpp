@@ -35,11 +35,6 @@ Approach approach_of(int number) {
   return kTurns[number % 4];
 }
 
-/// Where a head is sent first, so that it comes to its aim from the wanted side, through all play.
-Joints run_up_to(const Joints& aim, const Approach& from) {
-  return {aim.pan_rad - from.pan * kRunUp_rad, aim.tilt_rad - from.tilt * kRunUp_rad, aim.beam_rad};
-}
-
 double way_s(const HeadSetup& setup, const Joints& a, const Joints& b) {
   return std::max(std::abs(a.pan_rad - b.pan_rad) / setup.pan_speed_rad_s,
                   std::abs(a.tilt_rad - b.tilt_rad) / setup.tilt_speed_rad_s);
@@ -178,12 +173,14 @@ std::optional<HeadRun::Aim> HeadRun::plan() {
 std::optional<HeadRun::Aim> HeadRun::probe(bool pan) {
   if (sighted_.size() <= first_) return std::nullopt;  // it was somebody else's light
   const bool seen = probed_ > 0 && sighted_.back().aim.joints == aim_.joints;
-  if (seen || probed_ >= static_cast<int>(std::size(kProbes_rad))) return std::nullopt;
-  Joints joints = sighted_[first_].aim.joints;
-  (pan ? joints.pan_rad : joints.tilt_rad) += kProbes_rad[probed_++];
-  joints.pan_rad = std::clamp(joints.pan_rad, aims_within_.pan_min_rad, aims_within_.pan_max_rad);
-  joints.tilt_rad = std::clamp(joints.tilt_rad, aims_within_.tilt_min_rad, aims_within_.tilt_max_rad);
-  return Aim{joints, {}};
+  while (!seen && probed_ < static_cast<int>(std::size(kProbes_rad))) {
+    Joints joints = sighted_[first_].aim.joints;
+    (pan ? joints.pan_rad : joints.tilt_rad) += kProbes_rad[probed_++];
+    joints.pan_rad = std::clamp(joints.pan_rad, aims_within_.pan_min_rad, aims_within_.pan_max_rad);
+    joints.tilt_rad = std::clamp(joints.tilt_rad, aims_within_.tilt_min_rad, aims_within_.tilt_max_rad);
+    if (may_aim(setup_, joints, {})) return Aim{joints, {}};
+  }
+  return std::nullopt;
 }
 
 /// The aim that narrows the beam's error most, over all places and by its time.
@@ -206,7 +203,8 @@ std::optional<HeadRun::Aim> HeadRun::most_informative() const {
       last = joints;
       const HeadSighting seen = sighting_to_come(places_[p], eye_m, *joints, from);
       FitRows rows = off_sight_rows(fit, seen);
-      if (!used_[p]) candidates.push_back({{*joints, from, p}, rows, std::pow(seen.standard_error_rad, 2)});
+      if (!used_[p] && may_aim(setup_, *joints, from))
+        candidates.push_back({{*joints, from, p}, rows, std::pow(seen.standard_error_rad, 2)});
       rows.rightCols<3>().setZero();
       wanted.noalias() += rows.transpose() * rows;
     }
@@ -237,7 +235,7 @@ std::optional<HeadRun::Aim> HeadRun::farthest_from_tried() const {
     for (const Joints& near : {aim_.joints, flipped(aim_.joints)}) {
       const Vec3 to_m = places_[p].position_world_m - pose.pivot_world_m();
       const auto joints = pose.joints_towards(to_m, from, aims_within_, near);
-      if (!joints) continue;
+      if (!joints || !may_aim(setup_, *joints, from)) continue;
       double apart_rad = kPi;
       for (const Joints& tried : tried_)
         apart_rad = std::min(apart_rad, std::max(std::abs(tried.pan_rad - joints->pan_rad),

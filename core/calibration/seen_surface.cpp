@@ -12,7 +12,7 @@ namespace {
 const double kLeastCosine = std::cos(rad_from_deg(78));
 constexpr double kDarkestSurface = 0.05, kGlossiest = 0.03;
 /// Neighbours on one plane, up to rounding and the facets of round things.
-constexpr float kSameFacing = 0.9995f, kOffSamePlane_m = 0.005f;
+constexpr float kOnePlaneFacing = 0.9995f, kOffSamePlane_m = 0.005f;
 
 SurfacePixel pixel_at(const RayScene& rays, const Camera& camera, int x_px, int y_px) {
   const double x = x_px + 0.5, y = y_px + 0.5;
@@ -37,7 +37,7 @@ SurfacePixel pixel_at(const RayScene& rays, const Camera& camera, int x_px, int 
 }
 
 bool of_one_plane(const SurfacePixel& a, const SurfacePixel& b) {
-  return a.seen() && b.seen() && a.material == b.material && a.normal.dot(b.normal) > kSameFacing &&
+  return a.seen() && b.seen() && a.material == b.material && a.normal.dot(b.normal) > kOnePlaneFacing &&
          std::abs((a.position_m - b.position_m).dot(a.normal)) < kOffSamePlane_m;
 }
 

@@ -66,6 +66,9 @@ GainEstimator::GainEstimator(const Rig& rig, const LightModel& model)
                         model.point_fixed_error_lx, fixed, "point_fixed_error_lx");
   meter_error_ = joined(matrix_or_zero(model.meter_standard_error, meters, fixtures, "meter_standard_error"),
                         model.meter_fixed_error_lx, fixed, "meter_fixed_error_lx");
+  any_aim_ = model.any_aim_lux_per_level;
+  LUXRIG_CHECK(any_aim_.size() == 0 || (any_aim_.rows() == points && any_aim_.cols() == fixtures),
+               "any_aim_lux_per_level is {} × {}, the rig {} × {}", any_aim_.rows(), any_aim_.cols(), points, fixtures);
   max_level_.resize(fixtures);
   watts_.resize(fixtures);
   max_watts_ = rig.limits.max_watts.value_or(std::numeric_limits<double>::infinity());
@@ -74,6 +77,7 @@ GainEstimator::GainEstimator(const Rig& rig, const LightModel& model)
     max_level_[j] = rig.max_level(fixture);
     watts_[j] = rig.limits.max_watts ? rig.luminaires[fixture.luminaire].watts.value_or(0) : 0;
     housing_.push_back(fixture.housing.value_or(static_cast<std::size_t>(j)));
+    dimmers_.emplace_back(fixture.dimmer_curve, !fixture.measured_curve.empty());
     fixture_names_.push_back(fixture.name);
   }
   for (std::size_t i = 0; i < luxmeters_.size(); ++i)

@@ -187,6 +187,13 @@ class GainEstimator {
 
   /// Rows for any levels, as a desk may send. They use bounds alone, so they are stricter than with evidence.
   [[nodiscard]] WorstCase worst_of_any(Time now) const;
+  /// The same while heads are turned by hand: what they give is bounded wherever they are aimed, however they hang
+  /// (LightModel::any_aim_lux_per_level), and whatever power of its drive a dimmer is that was not measured. That power
+  /// makes no row, so at a limit each such lamp gets one part for itself, and all others together get one.
+  /// turned: per fixture, 1 = such a head. Dark if the model does not say what it gives.
+  [[nodiscard]] WorstCase worst_of_any(Time now, std::span<const std::uint8_t> turned) const;
+  /// The model says what heads give wherever they are aimed.
+  [[nodiscard]] bool tells_of_any_aim() const { return any_aim_.size() > 0; }
 
   /// Worth of each lamp to the goals, by the model.
   [[nodiscard]] LampWorth worth() const;
@@ -271,6 +278,8 @@ class GainEstimator {
                                                          const Eigen::VectorXd& stated_lux,
                                                          const Eigen::VectorXd& surprise) const;
 
+  Eigen::MatrixXd any_aim_;                                    ///< as the model's; may be empty
+  std::vector<std::pair<DimmerCurve, bool>> dimmers_;          ///< per fixture: its label's curve; 1 = it was measured
   Eigen::MatrixXd point_, point_error_, meter_, meter_error_;  ///< a column per fixture, then one for daylight, if any
   std::vector<Luxmeter> luxmeters_;
   std::vector<Point> points_;

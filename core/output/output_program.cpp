@@ -252,7 +252,8 @@ void OutputProgram::shared_levels_at(Time now, std::span<double> level) const {
   if (!desk_has_a_say(now)) {
     // The levels sent now are Luxrig's own. They are within the limits by meter readings, but may be brighter than the
     // limits for any levels allowed so far.
-    Time last{};
+    if (now < turned_until) return scale_to_limits(any_lux_per_level, any_max_lx, level, 0, switched, worth);
+    Time last = turned_until;
     for (const DeskBlend& desk : desks) last = std::max(last, desk.start + desk.duration);
     if (now >= last + limits_released) return;
     const double relief = fade_share(curve, to_seconds(now - last) / to_seconds(limits_released));

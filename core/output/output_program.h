@@ -92,6 +92,10 @@ struct OutputProgram {
   Eigen::MatrixXd any_lux_per_level;
   Eigen::VectorXd any_max_lx;
   Duration limits_released{};
+  /// Heads that were turned by hand, of which these limits hold wherever they are aimed; and when all of them were back.
+  /// Until then the limits apply in full. turned: per fixture, 1 = such a head; may be empty.
+  std::vector<std::uint8_t> turned{};
+  Time turned_until{};
   /// Until then, heads with limits round them are moving, and a desk cannot light them.
   Time heads_arrive{};
   std::vector<std::uint8_t> heads_guarded;  ///< per fixture, 1 = such a head; may be empty

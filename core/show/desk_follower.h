@@ -25,7 +25,8 @@ struct DeskFollowerSettings {
   std::vector<DimmerCurve> dimmer_curve;  ///< per fixture; converts a desk's drive to a level
   std::vector<MeasuredCurve> measured_curve{};  ///< the same; empty = nothing is measured
   std::vector<Joints> joints;             ///< per fixture
-  /// The model's limits hold for heads as Luxrig aims them. Where there are limits, a desk cannot turn heads.
+  /// The model's limits hold for heads as Luxrig aims them. Where there are limits, a desk cannot turn heads; one that is
+  /// aimed by hand is dimmed so far that its light is within them wherever it looks (turned_heads.h).
   bool desk_may_turn = true;
   Duration fade{};
   FadeCurve curve = FadeCurve::s_curve;

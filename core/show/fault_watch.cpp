@@ -50,7 +50,7 @@ constexpr double kFaultShare = 0.08;
 constexpr double kStatedShare = 0.3, kCalibratedShare = 0.03;
 /// How wrong the light may be that is expected of a changed level, as a share of the change.
 constexpr double kStatedStep = 1, kCalibratedStep = 0.1;
-constexpr double kSameLevel = 1e-6;
+constexpr double kUnchangedLevel = 1e-6;
 /// No lamp's light is less certain than by this share: it is not nothing, and not twice as much.
 constexpr double kLeastKnown = 0.5;
 /// The same of the exponent of a dimmer's curve.
@@ -141,7 +141,7 @@ void FaultWatch::follow_levels(const GainEstimator& estimator, const std::vector
     if (!(stated_lx > kDark_lx)) continue;
     double variance = 0;
     for (std::size_t f = 0; f < levels.size(); ++f) {
-      if (std::abs(levels[f] - before[f]) < kSameLevel) continue;
+      if (std::abs(levels[f] - before[f]) < kUnchangedLevel) continue;
       const Prediction light = estimator.lux_per_level_at_meter(m, f);
       const double wrong_by = fixtures_[f].known_to ? kCalibratedStep : kStatedStep;
       variance += std::pow(wrong_by * light.lux * (levels[f] - before[f]), 2);

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/solve/placement/scene/mounting.h"
+#include "core/tasks/any_aim.h"
 #include "core/tasks/rig_notes/rig_notes.h"
 #include "core/tasks/rig_transport.h"
 #include "core/tasks/scene_builder.h"
@@ -107,6 +108,12 @@ LightModel light_model(const Rig& rig, const TransportMatrix& transport) {
         model.local_sd[f] = known_to->local;
       }
   }
+  return model;
+}
+
+LightModel light_model(const Session& session, const TransportMatrix& transport) {
+  LightModel model = light_model(session.rig, transport);
+  model.any_aim_lux_per_level = any_aim_lux_per_level(session.rig, session.scene);
   return model;
 }
 

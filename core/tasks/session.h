@@ -30,6 +30,8 @@ struct Session {
 
 /// The part of a transport that the controller needs.
 [[nodiscard]] LightModel light_model(const Rig& rig, const TransportMatrix& transport);
+/// The same with what heads may give wherever they are aimed.
+[[nodiscard]] LightModel light_model(const Session& session, const TransportMatrix& transport);
 
 /// Light at the rig's points for given levels of the fixtures, daylight included; with colours if the transport has
 /// primaries.

@@ -226,6 +226,9 @@ void Daemon::tell_guardian(Time at) {
   for (const HeadDim& dim : program.dims) {
     if (dim.to == 0) last_look_.look.levels[dim.fixture] = last_look_.safe_levels[dim.fixture] = 0;
   }
+  // So do heads that may look elsewhere than the safe look has them, where points have limits.
+  for (std::size_t f = 0; f < program.turned.size(); ++f)
+    if (program.turned[f] != 0) last_look_.safe_levels[f] = 0;
   if (program.blackout) std::fill(last_look_.safe_levels.begin(), last_look_.safe_levels.end(), 0.0);
   last_look_.hold_s = program.blackout ? 0 : rig.safe.hold_s;
   last_look_.fade_s = rig.safe.fade_s;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/tasks/any_aim.h"
 #include "core/tasks/rig_transport.h"
 #include "tools/luxrigd/scheduling.h"
 
@@ -24,6 +25,7 @@ std::optional<KeptLight> LightOfLooks::read_saved(const Session& session) {
   const std::uint64_t key = light_key(session.rig, session.scene, compute_);
   auto light = kept_light(*folder_, key, session.rig);
   if (!light) return std::nullopt;
+  light->model.any_aim_lux_per_level = any_aim_lux_per_level(session.rig, session.scene);
   auto known = put({key, *light, std::nullopt});
   const std::lock_guard lock(mutex_);
   saved_ = std::move(known);
@@ -31,7 +33,7 @@ std::optional<KeptLight> LightOfLooks::read_saved(const Session& session) {
 }
 
 void LightOfLooks::know(const Session& session, const std::vector<Joints>& joints, TransportMatrix transport) {
-  put(light_key(session.rig, session.scene, compute_), session.rig, joints, std::move(transport));
+  put(light_key(session.rig, session.scene, compute_), session, joints, std::move(transport));
 }
 
 Result<LightModel> LightOfLooks::model(const Session& session, const std::vector<Joints>& joints) {
@@ -45,7 +47,7 @@ Result<LightModel> LightOfLooks::model(const Session& session, const std::vector
       return compute_transport(session, compute_, {{}, joints}, nullptr, &before);
     });
     if (!transport) return tl::unexpected(std::move(transport.error()));
-    known = put(key, session.rig, joints, std::move(*transport));
+    known = put(key, session, joints, std::move(*transport));
   }
   save(known);
   return known->light.model;
@@ -67,10 +69,10 @@ std::shared_ptr<const LightOfLooks::Known> LightOfLooks::put(Known known) {
   return last;
 }
 
-std::shared_ptr<const LightOfLooks::Known> LightOfLooks::put(std::uint64_t key, const Rig& rig,
+std::shared_ptr<const LightOfLooks::Known> LightOfLooks::put(std::uint64_t key, const Session& session,
                                                              const std::vector<Joints>& joints,
                                                              TransportMatrix transport) {
-  LightModel model = light_model(rig, transport);
+  LightModel model = light_model(session, transport);
   return put({key, {joints, std::move(model)}, std::move(transport)});
 }
 

@@ -39,7 +39,7 @@ class LightOfLooks {
     std::optional<TransportMatrix> transport;  ///< none: it was read from a file, which has only the model
   };
   std::shared_ptr<const Known> put(Known known);
-  std::shared_ptr<const Known> put(std::uint64_t key, const Rig& rig, const std::vector<Joints>& joints,
+  std::shared_ptr<const Known> put(std::uint64_t key, const Session& session, const std::vector<Joints>& joints,
                                    TransportMatrix transport);
   /// The known light of this key with the most fixtures aimed as asked; nullptr if there is none.
   void save(const std::shared_ptr<const Known>& known);

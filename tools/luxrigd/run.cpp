@@ -283,7 +283,7 @@ int run_rig(const RunArguments& arguments) {
       look = std::move(solved->look);
       transport = std::move(solved->transport);
     }
-    light = KeptLight{look.joints, light_model(rig, *transport)};
+    light = KeptLight{look.joints, light_model(*session, *transport)};
     looks->know(*session, look.joints, std::move(*transport));
   }
   compute.watch.tell = nullptr;

@@ -21,7 +21,7 @@ Checked<PreparedRig> prepare(const std::filesystem::path& path, const PrepareOpt
   if (!solved) return problem(solved.error().detail, "mend the rig file");
   auto worlds = sim::WorldMaker::make(rig, options.max_truth_error, options.compute.watch);
   if (!worlds) return problem(worlds.error().detail, "mend the rig file");
-  KeptLight light{solved->look.joints, light_model(rig, solved->transport)};
+  KeptLight light{solved->look.joints, light_model(*session, solved->transport)};
   ComputeOptions in_a_show = options.compute;
   in_a_show.watch = {};
   in_a_show.threads = 1;  // each show is one process of several

@@ -68,7 +68,7 @@ void SharedControl::hand_back(OutputProgram& program, Time now) {
   }
 }
 
-SharedControl::Change SharedControl::step(OutputProgram& program, Time now) {
+SharedControl::Change SharedControl::step(OutputProgram& program, Time now, bool turns_back) {
   for (const Identification& one : identified_) {
     if (!one.pattern.over(now) || followers_[one.desk].phase() != DeskPhase::own)
       hear(program, now, one.desk, one.pattern.frame_at(now));
@@ -77,8 +77,9 @@ SharedControl::Change SharedControl::step(OutputProgram& program, Time now) {
     if (followers_[d].step(now)) put(program, d);
   }
   // A desk shares control, or the light is not ours at all.
-  const bool is = program.desk_has_a_say(now) || std::any_of(program.desks.begin(), program.desks.end(),
-                                                             [](const DeskBlend& desk) { return desk.silent; });
+  const bool is =
+      turns_back || program.desk_has_a_say(now) ||
+      std::any_of(program.desks.begin(), program.desks.end(), [](const DeskBlend& desk) { return desk.silent; });
   return {std::exchange(shared_, is), is};
 }
 
@@ -138,6 +139,7 @@ std::string SharedControl::who(const Rig& rig, const OutputProgram& program, Tim
   }
   if (!blinking.empty()) return blinking + " shows which one it is";
   if (!aimed.empty()) return aimed + " is aimed by hand";
+  if (program.turned_until > now && !program.desk_has_a_say(now)) return "a head that was aimed by hand turns back";
   return program.desk_has_a_say(now) || !listens_in_silence() ? "a desk has a say in the light"
                                                               : "listening for a desk";
 }

@@ -29,7 +29,8 @@ class SharedControl {
   struct Change {
     bool was = false, is = false;
   };
-  Change step(OutputProgram& program, Time now);
+  /// turns_back: a head that was aimed by hand is not back yet, so that the light is not the look's.
+  Change step(OutputProgram& program, Time now, bool turns_back = false);
   /// As of the last step.
   [[nodiscard]] bool shared() const { return shared_; }
 

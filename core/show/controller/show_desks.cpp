@@ -23,7 +23,7 @@ void ShowController::State::guard_against_desks(Time now) {
   if (sharing.empty()) return;
   const bool limited = std::any_of(points_in_force.begin(), points_in_force.end(),
                                    [](const Point& point) { return point.max_lx.has_value(); });
-  WorstCase worst = estimator.worst_of_any(now);
+  WorstCase worst = estimator.worst_of_any(now, turned_heads.turned());
   program.any_lux_per_level = std::move(worst.worst_lux_per_level);
   program.any_max_lx = std::move(worst.max_lx);
   if (rig.limits.max_watts) {
@@ -35,6 +35,8 @@ void ShowController::State::guard_against_desks(Time now) {
     program.any_max_lx[row] = *rig.limits.max_watts;
   }
   program.limits_released = from_seconds(rig.control.fade_s);
+  program.turned = turned_heads.turned();
+  program.turned_until = turned_heads.home_at();
   program.heads_arrive = turned ? arrive : Time::max();
   program.heads_guarded.assign(rig.fixtures.size(), 0);
   for (std::size_t f = 0; f < rig.fixtures.size(); ++f) program.heads_guarded[f] = limited && rig.fixtures[f].moves;
@@ -55,7 +57,11 @@ void ShowController::State::begin_after_listening(Time now) {
 }
 
 void ShowController::State::step_desks(Time now) {
-  const SharedControl::Change shared = sharing.step(program, now);
+  if (turned_heads.step(now, program, health)) {
+    guard_against_desks(now);
+    ++program.revision;
+  }
+  const SharedControl::Change shared = sharing.step(program, now, turned_heads.away(now));
   if (shared.is) progress.converged = false;
   // Readings under a desk's control are not believed, and limits are still being released.
   if (shared.was && !shared.is) {
@@ -130,7 +136,12 @@ Result<void> ShowController::State::aim(Time now, std::size_t fixture, const Joi
     return refusal(fmt::format("it would look into keep-out zone \"{}\"", head_guard.zones().name(*zone)));
   const std::vector<std::size_t> fixtures = housing_of(rig, fixture);
   DeskFollowerSettings settings = desk_settings({DeskMode::takeover, HandBack::at_once}, fixtures);
-  if (!settings.desk_may_turn) return refusal("points of this rig have limits, and what it gives there is not known");
+  if (!settings.desk_may_turn) {
+    if (!estimator.tells_of_any_aim())
+      return refusal("points of this rig have limits, and what it gives there is not known");
+    settings.desk_may_turn = true;
+    turned_heads.turn(rig, now, fixtures);
+  }
   settings.fade = std::min(settings.fade, kIdentifyFade);
   std::vector<double> drive;
   for (const std::size_t f : fixtures)

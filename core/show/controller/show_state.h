@@ -21,6 +21,7 @@
 #include "core/show/meter_readings.h"
 #include "core/show/scale_watch.h"
 #include "core/show/show_controller.h"
+#include "core/show/turned_heads.h"
 
 namespace luxrig {
 
@@ -57,6 +58,7 @@ struct ShowController::State {
   bool power_came = false;                  ///< light has been asked for once
 
   SharedControl sharing;
+  TurnedHeads turned_heads;
 
   Phase phase = Phase::idle;
   Time phase_since{};

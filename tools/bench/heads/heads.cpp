@@ -11,10 +11,10 @@
 #include <string>
 #include <string_view>
 
+#include "core/calibration/head_meter_run.h"
 #include "core/calibration/head_run.h"
 #include "sim/devices/head.h"
 #include "sim/world/deviations.h"
-#include "tools/bench/heads/head_meter_run.h"
 #include "tools/bench/heads/head_pictures.h"
 #include "tools/bench/heads/head_rig.h"
 #include "tools/bench/suites.h"
@@ -143,24 +143,30 @@ class HeadMeters {
   [[nodiscard]] const std::vector<HeadMeter>& stated() const { return stated_; }
   [[nodiscard]] double delay_s() const { return delay_s_; }
 
-  /// Direct light, what the wall throws back where the beam's axis falls, and the room's own.
+  /// Direct light, what the room throws back once where the beam falls, and the room's own.
   std::vector<double> read(const std::optional<HeadPictures::Beam>& beam) {
     std::normal_distribution<double> normal;
-    std::optional<Hit> wall;
-    if (beam)
-      wall = rig_.true_rays.nearest(beam->world_from_lamp.translation_m,
-                                    beam->world_from_lamp.direction(-Vec3::UnitZ()), Vec3::Zero());
+    std::vector<std::pair<Hit, double>> lit;  // with the flux that leaves there
+    for (int k = 0; beam && k < kBeamRays; ++k) {
+      const DirectionSample ray = beam->intensity->sample(unit_(random_), unit_(random_));
+      if (!(ray.density_per_sr > 0)) continue;
+      const auto hit = rig_.true_rays.nearest(beam->world_from_lamp.translation_m,
+                                              beam->world_from_lamp.direction(ray.direction), Vec3::Zero());
+      if (!hit) continue;
+      lit.emplace_back(*hit, beam->intensity->intensity_cd(ray.direction) / ray.density_per_sr / kBeamRays *
+                                 rig_.true_rays.material_of(hit->triangle).luminous_reflectance());
+    }
     std::vector<double> lux;
     for (std::size_t m = 0; m < stated_.size(); ++m) {
       double light = kRoomLight_lx;
       if (beam) light += direct_lx(stated_[m], *beam);
-      if (wall) {
-        const Vec3 to_m = stated_[m].position_world_m - wall->position_world_m;
-        const double leaves = to_m.normalized().dot(wall->normal_world),
+      for (const auto& [place, flux_lm] : lit) {
+        const Vec3 to_m = stated_[m].position_world_m - place.position_world_m;
+        const double leaves = to_m.normalized().dot(place.normal_world),
                      arrives = -to_m.normalized().dot(stated_[m].normal_world);
-        if (leaves > 0 && arrives > 0)
-          light += beam->intensity->flux_lm() * rig_.true_rays.material_of(wall->triangle).luminous_reflectance() /
-                   kPi * leaves * arrives / std::max(to_m.squaredNorm(), 0.16);
+        if (leaves > 0 && arrives > 0 &&
+            !rig_.true_rays.occluded(stated_[m].position_world_m, stated_[m].normal_world, place.position_world_m))
+          light += flux_lm / kPi * leaves * arrives / std::max(to_m.squaredNorm(), kNearestPlace_m2);
       }
       lux.push_back(gain_[m] * light * (1 + kMeterNoise * normal(random_)));
     }
@@ -169,6 +175,8 @@ class HeadMeters {
 
  private:
   static constexpr double kRoomLight_lx = 20, kMeterNoise = 0.02, kFastestMeter_s = 0.1, kSlowestMeter_s = 2;
+  static constexpr int kBeamRays = 200;
+  static constexpr double kNearestPlace_m2 = 0.01;
   [[nodiscard]] double direct_lx(const HeadMeter& meter, const HeadPictures::Beam& beam) const {
     const Vec3 to_m = meter.position_world_m - beam.world_from_lamp.translation_m;
     const double cosine = -to_m.normalized().dot(meter.normal_world);
@@ -181,6 +189,7 @@ class HeadMeters {
 
   const SimulatedRig& rig_;
   std::mt19937_64 random_;
+  std::uniform_real_distribution<double> unit_;
   std::vector<HeadMeter> stated_;
   std::vector<double> gain_;
   double delay_s_ = 0;

@@ -5,14 +5,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <thread>
 
 #include "core/calibration/camera_pose.h"
 #include "core/calibration/head_found.h"
 #include "core/calibration/head_run.h"
-#include "core/output/head_travel.h"
-#include "core/rig/housing.h"
 #include "tools/luxrig/calibrate/camera_eye.h"
+#include "tools/luxrig/calibrate/head_turner.h"
 #include "tools/terminal/command.h"
 
 namespace luxrig {
@@ -22,12 +20,8 @@ using Clock = std::chrono::steady_clock;
 
 /// All lamps at once, to see where the camera hangs.
 constexpr double kToLookAround = 0.4;
-/// From an order to the light, or the movement, on the slowest bus; and a lamp's own lag.
-constexpr double kObeys_s = 0.3;
 /// A camera is turned off where it was found to look by this at least, and off its file by that.
 constexpr double kCameraKnown_rad = rad_from_deg(0.02), kCameraStated_rad = rad_from_deg(1);
-/// Of the ends of a range that a head which is turned by a calibration is not sent to.
-constexpr double kRangeInUse_rad = rad_from_deg(15);
 
 /// What the camera sees, and how well that is known.
 struct HeadView {
@@ -38,7 +32,12 @@ struct HeadView {
 class HeadMeasurer {
  public:
   HeadMeasurer(const Session& stated, CameraEye& eye, DaemonRig& daemon, const std::stop_token& stop)
-      : rig_(stated.rig), rays_(*stated.rays), eye_(eye), daemon_(daemon), stop_(stop) {}
+      : rig_(stated.rig),
+        rays_(*stated.rays),
+        eye_(eye),
+        daemon_(daemon),
+        stop_(stop),
+        turner_(stated.rig, daemon, stop) {}
 
   Result<HeadView> look_around(const Camera& stated) {
     std::vector<double> level;
@@ -56,22 +55,14 @@ class HeadMeasurer {
     view.priors.camera.covariance_rad2 = Mat3::Identity() * (known_rad * known_rad);
     const std::vector<double> dark(rig_.fixtures.size(), 0.0);
     if (auto sent = daemon_.light(dark, stop_); !sent) return tl::unexpected(sent.error());
-    held_at_ = Clock::now();
     return view;
   }
 
   Result<MeasuredHead> measure(const HeadView& view, std::size_t fixture) {
     MeasuredHead measured{fixture, {}, 0};
     const auto begun = Clock::now();
-    HeadSetup setup = head_setup(rig_, fixture, view.priors);
-    if (daemon_.turns_as_found(fixture)) {
-      setup.range.pan_min_rad += kRangeInUse_rad;
-      setup.range.pan_max_rad -= kRangeInUse_rad;
-      setup.range.tilt_min_rad += kRangeInUse_rad;
-      setup.range.tilt_max_rad -= kRangeInUse_rad;
-    }
-    HeadRun run(view.surface, rays_, setup);
-    at_.reset();
+    HeadRun run(view.surface, rays_, turner_.setup(fixture, view.priors));
+    turner_.begin();
     while (const auto step = run.next()) {
       const auto picture = take(fixture, *step);
       if (!picture) return tl::unexpected(picture.error());
@@ -85,39 +76,15 @@ class HeadMeasurer {
  private:
   /// The picture of a step. The head has arrived when it returns.
   Result<MergedPicture> take(std::size_t fixture, const HeadStep& step) {
-    const Joints before = at_.value_or(rig_.fixtures[fixture].joints);
-    if (step.joints.pan_rad != before.pan_rad) from_.pan = step.joints.pan_rad > before.pan_rad ? 1 : -1;
-    if (step.joints.tilt_rad != before.tilt_rad) from_.tilt = step.joints.tilt_rad > before.tilt_rad ? 1 : -1;
-    if (auto turned = daemon_.aim(fixture, step.joints, from_, step.lit ? 1 : 0); !turned)
-      return tl::unexpected(turned.error());
-    const auto arrives = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(
-                                            kObeys_s + travel_s(rig_.fixtures[fixture], at_, step.joints)));
-    at_ = step.joints;
+    const auto arrives = turner_.send(fixture, step.joints, step.lit);
+    if (!arrives) return tl::unexpected(arrives.error());
     // In the dark, the picture may be taken on the way.
-    if (auto waited = wait_until(step.lit ? arrives : Clock::now() + obeys()); !waited)
+    if (auto waited = turner_.wait_until(step.lit ? *arrives : Clock::now() + HeadTurner::kObeys); !waited)
       return tl::unexpected(waited.error());
     auto picture = eye_.look(stop_);
     if (!picture) return picture;
-    if (auto waited = wait_until(arrives); !waited) return tl::unexpected(waited.error());
+    if (auto waited = turner_.wait_until(*arrives); !waited) return tl::unexpected(waited.error());
     return picture;
-  }
-
-  static Clock::duration obeys() {
-    return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(kObeys_s));
-  }
-
-  Result<void> wait_until(Clock::time_point time) {
-    using namespace std::chrono_literals;
-    for (;;) {
-      if (stop_.stop_requested()) return tl::unexpected(Fault{Cause::cancelled, "", "stopped", {}});
-      if (Clock::now() - held_at_ > DaemonRig::kHoldAgain) {
-        if (auto held = daemon_.hold_again(); !held) return held;
-        held_at_ = Clock::now();
-      }
-      const auto left = time - Clock::now();
-      if (left <= Clock::duration::zero()) return {};
-      std::this_thread::sleep_for(std::min<Clock::duration>(left, 50ms));
-    }
   }
 
   const Rig& rig_;
@@ -125,35 +92,30 @@ class HeadMeasurer {
   CameraEye& eye_;
   DaemonRig& daemon_;
   std::stop_token stop_;
-  std::optional<Joints> at_;  ///< sent last
-  Approach from_;
-  Clock::time_point held_at_{};
+  HeadTurner turner_;
 };
-
-bool is_head(const Rig& rig, std::size_t fixture) {
-  return rig.fixtures[fixture].moves && rig.fixtures[fixture].housing.value_or(fixture) == fixture;
-}
 
 }  // namespace
 
-std::string why_no_heads(const Rig& rig) {
-  for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
-    if (!is_head(rig, f)) continue;
-    for (const Point& point : rig.points)
-      if (point.max_lx)
-        return fmt::format(
-            "its light at \"{}\", which has a limit, is not known while a head turns to where it was never computed",
-            point.name);
-  }
+std::vector<std::size_t> heads_of(const Rig& rig) {
+  std::vector<std::size_t> heads;
+  for (std::size_t f = 0; f < rig.fixtures.size(); ++f)
+    if (rig.fixtures[f].moves && rig.fixtures[f].housing.value_or(f) == f) heads.push_back(f);
+  return heads;
+}
+
+std::string limited_light_of(const Rig& rig) {
+  if (heads_of(rig).empty()) return {};
+  for (const Point& point : rig.points)
+    if (point.max_lx)
+      return fmt::format("so dim that \"{}\", which has a limit, would be within it wherever they look", point.name);
   return {};
 }
 
 Result<std::vector<MeasuredHead>> measure_heads(const Session& stated, std::size_t camera, const Camera& view,
                                                 DaemonRig& daemon, const std::stop_token& stop) {
   std::vector<MeasuredHead> heads;
-  std::vector<std::size_t> fixtures;
-  for (std::size_t f = 0; f < stated.rig.fixtures.size(); ++f)
-    if (is_head(stated.rig, f)) fixtures.push_back(f);
+  const std::vector<std::size_t> fixtures = heads_of(stated.rig);
   if (fixtures.empty()) return heads;
   auto eye = camera_eye(stated.rig, camera, daemon.sim_control());
   if (!eye) return tl::unexpected(eye.error());

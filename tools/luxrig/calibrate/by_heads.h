@@ -20,8 +20,11 @@ struct MeasuredHead {
   double seconds = 0;  ///< of rig time
 };
 
-/// Why heads are not measured, in words; empty = they can be, or there are none.
-[[nodiscard]] std::string why_no_heads(const Rig& rig);
+/// The heads of a rig, each by the first fixture of its housing.
+[[nodiscard]] std::vector<std::size_t> heads_of(const Rig& rig);
+
+/// How dim heads are while they are turned, in words; empty = no point has a limit, or there are none.
+[[nodiscard]] std::string limited_light_of(const Rig& rig);
 
 /// One head after the other, all else dark. A head whose beam is not found is refused in its result; a fault is of the
 /// daemon or the camera. view: the camera as it is known best.

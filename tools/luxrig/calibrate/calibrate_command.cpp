@@ -10,16 +10,17 @@
 #include <utility>
 
 #include "core/calibration/calibration_report.h"
-#include "core/calibration/hand_place.h"
 #include "core/calibration/meter_run.h"
 #include "core/calibration/open_run.h"
 #include "core/calibration/rig_light.h"
 #include "core/output/dimming.h"
 #include "tools/command_line/installed.h"
 #include "tools/luxrig/calibrate/by_camera.h"
+#include "tools/luxrig/calibrate/by_hand.h"
 #include "tools/luxrig/calibrate/by_heads.h"
 #include "tools/luxrig/calibrate/daemon_rig.h"
-#include "tools/luxrig/calibrate/hand_meter.h"
+#include "tools/luxrig/calibrate/heads_by_meters.h"
+#include "tools/luxrig/calibrate/measuring.h"
 #include "tools/luxrig/calibrate/simulated_run.h"
 #include "tools/luxrig/commands.h"
 #include "tools/luxrig/compute_arguments.h"
@@ -43,7 +44,7 @@ struct CalibrateArguments {
   std::string hours = "closed";
   double open_minutes = 28;
   std::vector<std::string> cameras;                 ///< names
-  bool no_heads = false;                            ///< with cameras: pan-tilt heads are left as they are
+  bool no_heads = false;                            ///< pan-tilt heads are left as they are
   std::optional<std::filesystem::path> meter_file;  ///< of the meter in the hand
   std::optional<std::filesystem::path> file;        ///< none = calibration.json beside the rig file
 };
@@ -78,36 +79,12 @@ Result<void> keep_old(const std::filesystem::path& file) {
   return tl::unexpected(Fault{Cause::system, "", kept.string() + " cannot be written: " + error.message(), {}});
 }
 
-std::string known_words(const GoalError& error) {
-  return fmt::format("{:.1f} %, at the worst to {:.1f} %", 100 * error.rms, 100 * error.worst);
-}
-
-/// What is being measured, by whichever means.
-struct Measuring {
-  const Session& session;
-  DaemonRig& daemon;
-  RigLight& light;
-  HandLevels levels;
-  std::vector<LampCurve> curves;  ///< per fixture
-  std::stop_token stop;
-  const CameraViews& cameras;  ///< that are used: their places are points of `light`, but none to hold a meter at
-  bool any = false;  ///< something is measured
-  int by_hand = 0;   ///< readings
-  MeasuredByCameras seen{};
-
-  [[nodiscard]] std::vector<std::size_t> no_points() const { return cameras.points(); }
-};
-
 /// All lamps at once, so dim that few limits are in the way; the daemon keeps them.
 std::vector<double> together(const Measuring& measuring) {
   const std::vector<double>& alone = measuring.levels.brightest;
   std::vector<double> level;
   for (const double brightest : alone) level.push_back(brightest / std::max<double>(1, std::sqrt(alone.size())));
   return level;
-}
-
-Fault during(const LampStep& step, const Rig& rig, const Fault& fault) {
-  return {fault.cause, "", words_of(step, rig) + ": " + fault.detail, {}};
 }
 
 std::function<void(std::size_t)> progress_of(const char* what, std::size_t steps) {
@@ -190,17 +167,17 @@ Result<void> by_cameras(Measuring& measuring) {
   return measuring.light.learn(measuring.seen.readings);
 }
 
-/// How the rig's heads hang and turn, by the first camera, told as it is found.
+/// How the rig's heads hang and turn, told as it is found: by the first camera if any are used, else by the luxmeters.
 Result<std::vector<MeasuredHead>> by_heads(const Measuring& measuring) {
   const Rig& rig = measuring.session.rig;
-  if (const std::string why = why_no_heads(rig); !why.empty()) {
-    fmt::print("Heads are not measured: {}.\n", why);
-    return std::vector<MeasuredHead>{};
-  }
+  if (const std::string dim = limited_light_of(rig); !dim.empty()) fmt::print("Heads are turned {}.\n", dim);
   const auto& each = measuring.seen.each;
-  const auto first = std::find_if(each.begin(), each.end(), [](const auto& one) { return one.has_value(); });
-  const CameraView& view = measuring.cameras.each[static_cast<std::size_t>(first - each.begin())];
-  auto heads = measure_heads(measuring.session, view.camera, (*first)->found.camera, measuring.daemon, measuring.stop);
+  const auto seen = std::find_if(each.begin(), each.end(), [](const auto& one) { return one.has_value(); });
+  auto heads = seen != each.end()
+                   ? measure_heads(measuring.session,
+                                   measuring.cameras.each[static_cast<std::size_t>(seen - each.begin())].camera,
+                                   (*seen)->found.camera, measuring.daemon, measuring.stop)
+                   : measure_heads_by_meters(measuring.session, measuring.daemon, measuring.stop);
   if (heads)
     for (const MeasuredHead& head : *heads) fmt::print("{}\n", words_of(rig, head));
   return heads;
@@ -241,86 +218,6 @@ std::vector<LuxMap> maps_of(const Measuring& measuring, std::span<const double> 
     maps.push_back(std::move(*map));
   }
   return maps;
-}
-
-std::string place_words(const Point& point) {
-  return fmt::format("Hold the luxmeter at \"{}\": x {:.2f} m, y {:.2f} m, {:.2f} m high, {}.", point.name,
-                     point.position_world_m.x(), point.position_world_m.y(), point.position_world_m.z(),
-                     facing_words(point.normal_world));
-}
-
-/// For the page: what is asked at this step of the place.
-HandQuestion question_of(const Measuring& measuring, const HandPlace& place, std::size_t k) {
-  const Rig& rig = measuring.session.rig;
-  const Point& point = rig.points[place.point];
-  const LampStep& step = place.steps[k];
-  const GoalError known = measuring.light.error_of_goals(measuring.levels.use);
-  HandQuestion question;
-  question.text = place_words(point);
-  question.position_world_m = point.position_world_m;
-  question.normal_world = point.normal_world;
-  if (step.level > 0) {
-    question.fixture = rig.fixtures[step.fixture].name;
-    question.level = std::min(1.0, step.level);
-  }
-  question.step = static_cast<int>(k + 1);
-  question.steps = static_cast<int>(place.steps.size());
-  question.readings = measuring.by_hand;
-  if (known.goals > 0) {
-    question.known_to = known.rms;
-    question.known_to_worst = known.worst;
-  }
-  return question;
-}
-
-/// One place; false = the person is done.
-Result<bool> at_place(Measuring& measuring, HandPlace place, HandMeter& meter) {
-  const Rig& rig = measuring.session.rig;
-  std::vector<std::optional<double>> lux(place.steps.size());
-  bool done = false;
-  for (std::size_t k = 0; k < place.steps.size(); ++k) {
-    LampStep& step = place.steps[k];
-    const auto sent = measuring.daemon.light(levels_of(step, rig), measuring.stop);
-    if (!sent) return tl::unexpected(during(step, rig, sent.error()));
-    step.level = (*sent)[step.fixture];
-    const auto answer = meter.ask(
-        fmt::format("{} of {}, {}", k + 1, place.steps.size(), words_of(step, rig)), question_of(measuring, place, k),
-        DaemonRig::kHoldAgain, [&] { return measuring.daemon.hold_again(); }, measuring.stop);
-    if (!answer) return tl::unexpected(answer.error());
-    done = answer->what == HandAnswer::What::done;
-    if (done || answer->what == HandAnswer::What::other_place) break;
-    if (answer->what != HandAnswer::What::reading) continue;
-    lux[k] = answer->lux;
-    ++measuring.by_hand;
-  }
-  // Without the dark, light of no lamp would count as theirs.
-  const auto readings = lux.front() ? readings_at(rig, place, lux, measuring.curves) : std::vector<LightReading>{};
-  if (readings.empty()) return !done;
-  if (auto learnt = measuring.light.learn(readings); !learnt) return tl::unexpected(learnt.error());
-  const GoalError now = measuring.light.error_of_goals(measuring.levels.use);
-  fmt::print("Now the light at {} goals is known to {}.\n\n", now.goals, known_words(now));
-  measuring.any = true;
-  return !done;
-}
-
-Result<void> by_hand(Measuring& measuring, const std::optional<std::filesystem::path>& meter_file) {
-  const Rig& rig = measuring.session.rig;
-  PageQuestion page(measuring.daemon.daemon(), DaemonRig::kHeld_s);
-  HandMeter meter(meter_file, page);
-  fmt::print(
-      "Type each reading in lux{}. s skips a lamp, n goes to another place, q ends. The daemon's page asks, too: "
-      "luxrig page opens it.\n\n",
-      meter.has_file() ? ", or Enter alone to take it from the meter's file" : "");
-  std::vector<std::size_t> been = measuring.no_points();
-  while (const auto place = next_hand_place(rig, measuring.light, measuring.levels, measuring.curves, been)) {
-    fmt::print("{}\n", place_words(rig.points[place->point]));
-    const auto more = at_place(measuring, *place, meter);
-    if (!more) return tl::unexpected(more.error());
-    if (!*more) return {};
-    been.push_back(place->point);
-  }
-  fmt::print("There is no further place that would help.\n");
-  return {};
 }
 
 /// calibration.json -> calibration-report.html
@@ -421,13 +318,13 @@ int run_calibrate(const CalibrateArguments& arguments) {
   if (seen)
     if (auto measured = by_cameras(measuring); !measured) return report(measured.error());
   std::vector<MeasuredHead> heads;
-  if (seen && !arguments.no_heads) {
+  if ((seen || (meters && !open)) && !arguments.no_heads) {
     auto measured = by_heads(measuring);
     if (!measured) return report(measured.error());
     heads = std::move(*measured);
   }
   if (arguments.hand)
-    if (auto measured = by_hand(measuring, arguments.meter_file); !measured) return report(measured.error());
+    if (auto measured = measure_by_hand(measuring, arguments.meter_file); !measured) return report(measured.error());
 
   if (!measuring.any) {
     fmt::print(stderr, "luxrig: nothing was measured, so nothing is written\n");
@@ -488,7 +385,7 @@ Action declare_calibrate(CLI::App& command) {
           "by this [[camera]] of the rig, with at least one reading of a luxmeter; several times for several cameras; "
           "by the first also how pan-tilt heads hang and turn")
       ->type_name("NAME");
-  command.add_flag("--no-heads", calibrate->no_heads, "with --camera: do not turn the rig's pan-tilt heads");
+  command.add_flag("--no-heads", calibrate->no_heads, "do not turn the rig's pan-tilt heads to see how they hang");
   command.add_option("--meter-file", calibrate->meter_file,
                      "with --hand: file that the meter's program writes; Enter alone takes its last reading");
   command

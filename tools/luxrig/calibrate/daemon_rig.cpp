@@ -138,9 +138,14 @@ Result<void> DaemonRig::hold(std::span<const double> level) const {
   return {};
 }
 
+Joints DaemonRig::in_its_terms(std::size_t fixture, const Joints& sent, const Approach& from) const {
+  const Fixture& in_use = dimmed_as_[fixture];
+  return in_use.joint_map ? in_use.joint_map->reached_by(sent, from) : sent;
+}
+
 Result<void> DaemonRig::aim(std::size_t fixture, const Joints& sent, const Approach& from, double level) const {
   const Fixture& in_use = dimmed_as_[fixture];
-  const Joints turned = in_use.joint_map ? in_use.joint_map->reached_by(sent, from) : sent;
+  const Joints turned = in_its_terms(fixture, sent, from);
   return post("/api/aim", {{"fixture", in_use.name},
                            {"pan_deg", deg_from_rad(turned.pan_rad)},
                            {"tilt_deg", deg_from_rad(turned.tilt_rad)},
@@ -240,26 +245,40 @@ Result<std::vector<DaemonRig::Read>> DaemonRig::measure(std::span<const std::vec
     if (!learnt) return tl::unexpected(learnt.error());
     timing_ = std::move(*learnt);
   }
+  std::vector<Read> read;
+  auto readings = read_lights(
+      plan.size(),
+      [&](std::size_t light_number) -> Result<void> {
+        if (tell) tell(light_number);
+        auto sent = light(plan[light_number], stop);
+        if (!sent) return tl::unexpected(sent.error());
+        read.push_back({std::move(*sent), {}});
+        return {};
+      },
+      stop);
+  if (!readings) return tl::unexpected(readings.error());
+  for (std::size_t k = 0; k < read.size(); ++k) read[k].readings = std::move((*readings)[k]);
+  return read;
+}
+
+Result<std::vector<std::vector<std::optional<SteadyReading>>>> DaemonRig::read_lights(
+    std::size_t count, const std::function<Result<void>(std::size_t)>& set, const std::stop_token& stop) {
   const Timings timing = timing_.value_or(Timings(samples_.size(), MeterTiming{0, kSlowestMeter_s, kSlowestPeriod_s}));
   const double dwell = std::max(kShortestDwell_s, dwell_s(timing));
   for (auto& samples : samples_) samples.clear();
   ReadingLog log(timing);
-  std::vector<Read> read;
-  for (const std::vector<double>& level : plan) {
-    if (tell) tell(read.size());
-    auto sent = light(level, stop);
-    if (!sent) return tl::unexpected(sent.error());
-    if (const auto watched = watch(arrived_at_s_ + dwell - now_s(), stop); !watched)
-      return tl::unexpected(watched.error());
-    log.light(arrived_at_s_, now_s());
-    read.push_back({std::move(*sent), {}});
+  for (std::size_t k = 0; k < count; ++k) {
+    arrived_at_s_ = 0;
+    if (auto stands = set(k); !stands) return tl::unexpected(stands.error());
+    // light() knows when its levels were first seen to be there.
+    const double arrived_s = arrived_at_s_ > 0 ? arrived_at_s_ : now_s();
+    if (const auto watched = watch(arrived_s + dwell - now_s(), stop); !watched) return tl::unexpected(watched.error());
+    log.light(arrived_s, now_s());
   }
   if (const auto watched = watch(log.whole_at_s() - now_s(), stop); !watched) return tl::unexpected(watched.error());
   for (std::size_t m = 0; m < samples_.size(); ++m)
     for (const TimedLux& sample : samples_[m]) log.sample(m, sample);
-  auto readings = log.readings();
-  for (std::size_t k = 0; k < read.size(); ++k) read[k].readings = std::move(readings[k]);
-  return read;
+  return log.readings();
 }
 
 Result<std::vector<double>> DaemonRig::levels_now() {

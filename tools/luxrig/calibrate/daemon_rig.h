@@ -46,6 +46,10 @@ class DaemonRig {
   /// Turns a head to where these joints take it, in the rig file's terms, its lamp at this share of full light. It is
   /// there once it has had the time. Lasts as long as a held level. from: the side that each joint comes from.
   [[nodiscard]] Result<void> aim(std::size_t fixture, const Joints& sent, const Approach& from, double level) const;
+  /// The same joints in the daemon's terms.
+  [[nodiscard]] Joints in_its_terms(std::size_t fixture, const Joints& sent, const Approach& from) const;
+  /// The rig's fixtures as the daemon has them.
+  [[nodiscard]] const std::vector<Fixture>& fixtures_in_use() const { return dimmed_as_; }
   /// The daemon turns its heads by a calibration already.
   [[nodiscard]] bool turns_as_found(std::size_t fixture) const { return dimmed_as_[fixture].joint_map.has_value(); }
   [[nodiscard]] const HttpPeer& daemon() const { return daemon_; }
@@ -63,6 +67,11 @@ class DaemonRig {
                                                   std::span<const double> together,
                                                   const std::function<void(std::size_t done)>& tell,
                                                   const std::stop_token& stop);
+  /// The same for lights that the caller sets: set(k) returns when the k-th stands still. Per light, per luxmeter.
+  [[nodiscard]] Result<std::vector<std::vector<std::optional<SteadyReading>>>> read_lights(
+      std::size_t count, const std::function<Result<void>(std::size_t light)>& set, const std::stop_token& stop);
+  /// Keeps looking for so long.
+  [[nodiscard]] Result<void> watch(double seconds, const std::stop_token& stop);
   /// As sent now, per fixture.
   [[nodiscard]] Result<std::vector<double>> levels_now();
 
@@ -73,8 +82,6 @@ class DaemonRig {
   [[nodiscard]] Result<nlohmann::json> status() const;
   /// The status now. Readings that are new are kept as samples.
   [[nodiscard]] Result<nlohmann::json> look();
-  /// Keeps looking for so long.
-  [[nodiscard]] Result<void> watch(double seconds, const std::stop_token& stop);
   [[nodiscard]] Result<Timings> learn_timing(std::span<const double> together, const std::stop_token& stop);
   [[nodiscard]] Result<void> hold(std::span<const double> level) const;
   [[nodiscard]] Result<void> post(const char* route, const nlohmann::json& body) const;

@@ -1,0 +1,37 @@
+#pragma once
+/// What is being measured of a daemon's rig, by whichever means.
+
+#include <fmt/format.h>
+
+#include <cstddef>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "core/calibration/hand_place.h"
+#include "core/calibration/rig_light.h"
+#include "tools/luxrig/calibrate/by_camera.h"
+#include "tools/luxrig/calibrate/daemon_rig.h"
+
+namespace luxrig {
+
+struct Measuring {
+  const Session& session;
+  DaemonRig& daemon;
+  RigLight& light;
+  HandLevels levels;
+  std::vector<LampCurve> curves;  ///< per fixture
+  std::stop_token stop;
+  const CameraViews& cameras;  ///< that are used: their places are points of `light`, but none to hold a meter at
+  bool any = false;            ///< something is measured
+  int by_hand = 0;             ///< readings
+  MeasuredByCameras seen{};
+
+  [[nodiscard]] std::vector<std::size_t> no_points() const { return cameras.points(); }
+};
+
+[[nodiscard]] inline std::string known_words(const GoalError& error) {
+  return fmt::format("{:.1f} %, at the worst to {:.1f} %", 100 * error.rms, 100 * error.worst);
+}
+
+}  // namespace luxrig
