@@ -60,8 +60,8 @@ struct ChangeCause {
 };
 
 /// The causes that explain the change about as well as the best, which comes first. Kind::unclear alone if none explains
-/// it; empty if nothing changed. The show waits for it: 1 ms for 12 lamps and 6 meters,
-/// a quarter of a second for 200 lamps and 20 meters.
+/// it; empty if nothing changed. 1 ms for 12 lamps and 6 meters, a quarter of a second for 200 lamps and 20 meters: the
+/// show searches beside its loop.
 [[nodiscard]] std::vector<ChangeCause> likely_causes(const LightChange& change);
 /// What a person is told of them: Kind::unclear alone if there are more than kMostCauses.
 [[nodiscard]] std::vector<ChangeCause> causes_to_tell(std::vector<ChangeCause> likely);

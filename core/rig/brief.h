@@ -157,6 +157,7 @@ struct ControlSpec {
   double tolerance = 0.02;                 ///< |measured - goal| / goal below which no correction round is run
   double goal_tolerance = 0.1;             ///< |true - goal| / goal at which a goal still counts as met
   double gain_min = 0.6, gain_max = 1.15;  ///< range of a fixture's true output that the model allows, as a factor
+  bool fault_dips = true;  ///< one lamp may be dimmed for seconds, to tell causes of changed readings apart
   FilePosition in_file;
 };
 

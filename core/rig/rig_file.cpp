@@ -89,6 +89,7 @@ void RigReader::read_settings() {
     s.read("rounds", c.rounds);
     s.read("tolerance", c.tolerance);
     s.read("goal_tolerance", c.goal_tolerance);
+    s.read("fault_dips", c.fault_dips);
     s.read("gain_min", c.gain_min);
     s.read("gain_max", c.gain_max);
   });

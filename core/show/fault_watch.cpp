@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <utility>
 
 #include "core/output/dimming.h"
@@ -84,7 +85,7 @@ double curve_error_of(const Fixture& fixture) { return fixture.measured_curve.em
 }  // namespace
 
 FaultWatch::FaultWatch(const Rig& rig)
-    : fixtures_(rig.fixtures),
+    : fixtures_(std::make_shared<const std::vector<Fixture>>(rig.fixtures)),
       usual_(rig.luxmeters.size()),
       heard_(rig.luxmeters.size()),
       since_(rig.luxmeters.size()) {
@@ -97,16 +98,19 @@ void FaultWatch::forget() {
   since_.assign(since_.size(), {});
   last_levels_.clear();
   changed_ = false;
+  search_.reset();
   quiet_ = same_ = 0;
   likely_.clear();
   candidate_.clear();
   dip_.reset();
   dips_.clear();
+  barred_.reset();
   found_.reset();
 }
 
 void FaultWatch::light_changes(Time settled) {
   steady_from_ = settled + kSlowestMeter;
+  search_.reset();  // it is of the light before
   heard_.assign(heard_.size(), {});
 }
 
@@ -143,7 +147,7 @@ void FaultWatch::follow_levels(const GainEstimator& estimator, const std::vector
     for (std::size_t f = 0; f < levels.size(); ++f) {
       if (std::abs(levels[f] - before[f]) < kUnchangedLevel) continue;
       const Prediction light = estimator.lux_per_level_at_meter(m, f);
-      const double wrong_by = fixtures_[f].known_to ? kCalibratedStep : kStatedStep;
+      const double wrong_by = (*fixtures_)[f].known_to ? kCalibratedStep : kStatedStep;
       variance += std::pow(wrong_by * light.lux * (levels[f] - before[f]), 2);
     }
     if (variance > 0) usual_[m].doubt(std::sqrt(variance) / stated_lx);
@@ -152,16 +156,19 @@ void FaultWatch::follow_levels(const GainEstimator& estimator, const std::vector
 
 void FaultWatch::begin_change(Time now) {
   changed_ = true;
+  search_.reset();
   changed_since_ = now;
   quiet_ = same_ = 0;
   since_.assign(since_.size(), {});
   likely_.clear();
   candidate_.clear();
   dips_.clear();
+  barred_.reset();
 }
 
 void FaultWatch::end_change() {
   changed_ = false;
+  search_.reset();
   passed_by_ = std::min(passed_by_ + 1, kMostPassedBy);
   dips_.clear();
   found_.reset();
@@ -203,6 +210,7 @@ void FaultWatch::listen(Time now, const std::vector<std::optional<double>>& rati
 
 void FaultWatch::look(Time now, const GainEstimator& estimator, const std::vector<double>& levels) {
   if (now < steady_from_) return;
+  take_causes(now);
   if (found_ && !dip_ && all_are_back(estimator, levels)) end_change();
   if (now - looked_at_ < kLookEvery) return;
   const double passed_s = to_seconds(now - std::exchange(looked_at_, now));
@@ -230,8 +238,29 @@ void FaultWatch::look(Time now, const GainEstimator& estimator, const std::vecto
   quiet_ = differs ? 0 : quiet_ + 1;
   if (quiet_ >= kOver) return end_change();
   listen(now, ratio);
+  if (search_) return;  // what was read meanwhile counts for the next
   change_ = change(estimator, levels);
-  judge(now);
+  ask_for_causes();
+  take_causes(now);
+}
+
+void FaultWatch::ask_for_causes() {
+  search_ = std::make_shared<Search>();
+  if (!runner_) {
+    search_->likely = likely_causes(change_);
+    search_->done = true;
+    return;
+  }
+  // The task owns everything it uses.
+  runner_([to = search_, change = change_] {
+    to->likely = likely_causes(change);
+    to->done = true;
+  });
+}
+
+void FaultWatch::take_causes(Time now) {
+  if (!search_ || !search_->done) return;
+  judge(now, std::move(std::exchange(search_, nullptr)->likely));
 }
 
 double FaultWatch::noise_lx(std::size_t m, int samples) const {
@@ -247,7 +276,7 @@ void FaultWatch::share_out(const GainEstimator& estimator, std::size_t m, LightC
   double left_lx = change.before_lx[row] - (change.daylight.size() > 0 ? change.daylight[row] : 0), variance = 0;
   for (Index f = 0; f < change.level.size(); ++f) {
     const Prediction light = estimator.lux_per_level_at_meter(m, static_cast<std::size_t>(f));
-    const bool calibrated = fixtures_[static_cast<std::size_t>(f)].known_to.has_value();
+    const bool calibrated = (*fixtures_)[static_cast<std::size_t>(f)].known_to.has_value();
     const double lux = light.lux * change.level[f];
     change.of_fixture(row, f) = lux;
     change.fixture_error(row, f) =
@@ -278,9 +307,10 @@ LightChange FaultWatch::change(const GainEstimator& estimator, const std::vector
   change.daylight.setZero(meters);
   change.level = Eigen::Map<const Eigen::VectorXd>(levels.data(), fixtures);
   change.curve_error.resize(fixtures);
-  for (Index f = 0; f < fixtures; ++f) change.curve_error[f] = curve_error_of(fixtures_[static_cast<std::size_t>(f)]);
-  change.level_with_drive_of = [this, levels](std::size_t f, std::size_t g) {
-    return level_at(fixtures_[f], drive_for(fixtures_[g], levels[g]));
+  for (Index f = 0; f < fixtures; ++f)
+    change.curve_error[f] = curve_error_of((*fixtures_)[static_cast<std::size_t>(f)]);
+  change.level_with_drive_of = [fixtures = fixtures_, levels](std::size_t f, std::size_t g) {
+    return level_at((*fixtures)[f], drive_for((*fixtures)[g], levels[g]));
   };
   const std::vector<double> dark(levels.size(), 0.0);
   for (std::size_t m = 0; m < usual_.size(); ++m) {
@@ -301,8 +331,9 @@ LightChange FaultWatch::change(const GainEstimator& estimator, const std::vector
   return change;
 }
 
-void FaultWatch::judge(Time now) {
-  likely_ = likely_causes(change_);
+void FaultWatch::judge(Time now, std::vector<ChangeCause> likely) {
+  judged_at_ = now;
+  likely_ = std::move(likely);
   std::vector<ChangeCause> causes = causes_to_tell(likely_);
   const bool unclear = causes.size() == 1 && causes.front().kind == Kind::unclear;
   same_ = same(causes, candidate_) ? same_ + 1 : 1;
@@ -316,7 +347,8 @@ void FaultWatch::judge(Time now) {
   std::string text;
   for (const ChangeCause& cause : causes) text += (text.empty() ? "" : ", or ") + words(cause);
   if (causes.size() > 1) text = "either " + text;
-  found_ = Finding{std::move(causes), text + "; " + evidence(), changed_since_, changed_meters()};
+  text += "; " + evidence() + of_barred_dip(causes);
+  found_ = Finding{std::move(causes), std::move(text), changed_since_, changed_meters()};
 }
 
 /// Dead or dim: a dip of the lamp itself tells, and whether it is this lamp.
@@ -342,7 +374,7 @@ bool FaultWatch::examines(Time now) const {
 std::optional<FaultWatch::Dip> FaultWatch::lamp_to_dip(Time now, std::span<const std::uint8_t> may) const {
   const double since_s = to_seconds(now - changed_since_), from_s = kBeforeDip_s * (1 << passed_by_);
   if (!changed_ || dip_ || dips_.size() >= kMostDips || likely_.size() < 2 || since_s < from_s ||
-      since_s > from_s + kForDips_s || looked_at_ != now || is_benign(likely_.front()))
+      since_s > from_s + kForDips_s || judged_at_ != now || is_benign(likely_.front()))
     return std::nullopt;
   Eigen::VectorXd error_lx(change_.before_lx.size());
   for (Index m = 0; m < error_lx.size(); ++m) error_lx[m] = noise_lx(static_cast<std::size_t>(m), kDipSamples);
@@ -378,7 +410,7 @@ void FaultWatch::dip_ends() {
 }
 
 std::string FaultWatch::words(const ChangeCause& cause) const {
-  const auto lamp = [&](std::size_t k) { return "\"" + fixtures_[cause.who[k]].name + "\""; };
+  const auto lamp = [&](std::size_t k) { return "\"" + (*fixtures_)[cause.who[k]].name + "\""; };
   const auto meter = [&](std::size_t k) { return "\"" + meters_[cause.who[k]] + "\""; };
   const double percent = 100 * std::max(0.0, cause.share);
   switch (cause.kind) {
@@ -441,10 +473,17 @@ std::string FaultWatch::of_dips() const {
         followed += fmt::format("{}\"{}\" by {:+.3g} lx", followed.empty() ? "" : ", ",
                                 meters_[static_cast<std::size_t>(m)], dip.change_lx[m]);
     text +=
-        fmt::format("; when lamp \"{}\" was dimmed by {:.0f} %, {}", fixtures_[dip.fixture].name,
+        fmt::format("; when lamp \"{}\" was dimmed by {:.0f} %, {}", (*fixtures_)[dip.fixture].name,
                     100 * (1 - dip.level_share), followed.empty() ? "no luxmeter followed" : followed + " followed");
   }
   return text;
+}
+
+std::string FaultWatch::of_barred_dip(const std::vector<ChangeCause>& causes) const {
+  if (!barred_ || (causes.size() == 1 && causes.front().kind != Kind::unclear)) return "";
+  return fmt::format(
+      "; dimming lamp \"{}\" for 8 s would tell more: do it by hand, or take fault_dips = false out of [control]",
+      (*fixtures_)[*barred_].name);
 }
 
 void FaultWatch::tell(ShowStatus& status) const {

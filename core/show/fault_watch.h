@@ -5,10 +5,14 @@
 /// that, and which meters follow decides.
 
 #include <Eigen/Core>
+#include <atomic>
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/estimation/change_cause.h"
@@ -24,6 +28,11 @@ class FaultWatch {
   static constexpr double kDippedTo = 0.8, kDippedAgainTo = 0.5;
 
   explicit FaultWatch(const Rig& rig);
+
+  /// Runs a task once, on any thread. With it, causes are searched beside the loop (a quarter of a second for 200 lamps),
+  /// and the next look() after that uses what was found; without it, look() waits for that.
+  using Runner = std::function<void(std::function<void()>)>;
+  void use(Runner runner) { runner_ = std::move(runner); }
 
   /// The light changes until `settled`. What meters show from then on counts, once the slowest has followed.
   void light_changes(Time settled);
@@ -47,6 +56,8 @@ class FaultWatch {
   /// The lamp to dim now, so that the causes are told apart; nullopt: none, or not now. may: per fixture, 1 = it may be
   /// dimmed.
   [[nodiscard]] std::optional<Dip> lamp_to_dip(Time now, std::span<const std::uint8_t> may) const;
+  /// It would be dimmed, but the rig file forbids that (`fault_dips`): what is found says so where it would tell more.
+  void dip_is_barred(const Dip& dip) { barred_ = dip.fixture; }
   /// It is being dimmed. Call light_changes(), too.
   void dip_begins(const Dip& dip);
   /// Enough has been read under the dip.
@@ -84,14 +95,26 @@ class FaultWatch {
   [[nodiscard]] LightChange change(const GainEstimator& estimator, const std::vector<double>& levels) const;
   void share_out(const GainEstimator& estimator, std::size_t luxmeter, LightChange& change) const;
   [[nodiscard]] double noise_lx(std::size_t luxmeter, int samples) const;
-  void judge(Time now);
+  void ask_for_causes();
+  void take_causes(Time now);
+  void judge(Time now, std::vector<ChangeCause> likely);
   void add_doubt_of_lamps();
   [[nodiscard]] int meters_that_see(std::size_t fixture) const;
   [[nodiscard]] std::string words(const ChangeCause& cause) const;
   [[nodiscard]] std::string evidence() const;
   [[nodiscard]] std::string of_dips() const;
+  [[nodiscard]] std::string of_barred_dip(const std::vector<ChangeCause>& causes) const;
 
-  std::vector<Fixture> fixtures_;
+  /// Causes that are searched, or wait to be taken up.
+  struct Search {
+    std::atomic<bool> done{false};
+    std::vector<ChangeCause> likely{};
+  };
+
+  std::shared_ptr<const std::vector<Fixture>> fixtures_;  ///< shared with searches
+  Runner runner_;
+  std::shared_ptr<Search> search_;  ///< null = none
+  Time judged_at_{};
   std::vector<std::string> meters_;
   std::vector<UsualReading> usual_;  ///< per luxmeter
   std::vector<double> last_levels_;
@@ -102,13 +125,14 @@ class FaultWatch {
   int quiet_ = 0;                   ///< samples in a row without a difference
   int passed_by_ = 0;               ///< changes that went by themselves
   std::vector<MeanReading> since_;  ///< per luxmeter: reading over what is usual, since the change
-  LightChange change_;              ///< as of the last look
+  LightChange change_;              ///< as of the last look before causes were asked for
   std::vector<ChangeCause> likely_, candidate_;
   int same_ = 0;                        ///< samples in a row that led to candidate_
   std::optional<Dip> dip_;              ///< now
   std::vector<MeanReading> dip_share_;  ///< per luxmeter: reading over what is usual beside it
   int dip_looks_ = 0;
-  std::vector<LampDip> dips_;  ///< since the change
+  std::vector<LampDip> dips_;          ///< since the change
+  std::optional<std::size_t> barred_;  ///< fixture whose dip would have told more, since the change
   std::optional<Finding> found_;
 };
 

@@ -456,7 +456,10 @@ void ShowController::step(Time now) {
   state.remember_levels(now);
 }
 
-void ShowController::solve_beside(Beside beside) { state_->solving.use(std::move(beside)); }
+void ShowController::solve_beside(Beside beside) {
+  state_->faults.use(beside);
+  state_->solving.use(std::move(beside));
+}
 
 std::vector<double> ShowController::safe_look(Time now) const {
   std::vector<double> level = state_->limited_safe_levels(now);

@@ -189,8 +189,8 @@ class ShowController {
   void reading(Time now, const LuxReading& reading);
   void health(Time now, std::span<const Health> devices);
 
-  /// Runs a long solve once, on any thread; the next step() takes up the result. Without it, step() and settings by
-  /// hand solve themselves: milliseconds, but seconds with hundreds of lamps and limits.
+  /// Runs a long solve, or a search for what is wrong, once, on any thread; the next step() takes up the result. Without
+  /// it, step() and settings by hand do that themselves: milliseconds, but seconds with hundreds of lamps and limits.
   using Beside = std::function<void(std::function<void()>)>;
   void solve_beside(Beside beside);
 

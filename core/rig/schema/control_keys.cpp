@@ -80,6 +80,10 @@ constexpr KeySpec kControlKeys[] = {
      "least true output of a fixture, over its rated one, that readings can make the program believe"},
     {"control", "gain_max", number, "", "1.15", {1, 10}, "", "1.3", "the same, most"},
 
+    {"control", "fault_dips", yes_no, "", "true", kAny, "", "false",
+     "whether a held show may dim one lamp by a fifth, at most by half, for some 8 s, when readings change and several "
+     "faults explain that; false where no light may change unasked, as in mid-shot. Alarms then name several causes"},
+
     {"safe", "level", number, "", "0.1", kShare, "", "0.2",
      "of every fixture that has no `safe_level` of its own, nor its bus one"},
     {"safe", "hold_s", number, "s", "5", kSeconds, "", "6", "how long the last look is held first"},

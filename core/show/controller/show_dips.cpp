@@ -59,6 +59,7 @@ void ShowController::State::step_dip(Time now) {
     if (!calm || !program.done(now) || solving.running()) return;
     const auto dip = faults.lamp_to_dip(now, may_be_dipped());
     if (!dip) return;
+    if (!rig.control.fault_dips) return faults.dip_is_barred(*dip);
     dipped = Dipped{dip->fixture, program.to_level[dip->fixture], false};
     faults.dip_begins(*dip);
     return dip_to(now, dip->level_share * dipped->level);

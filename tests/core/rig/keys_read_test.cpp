@@ -117,7 +117,7 @@ std::string dump(const Rig& rig) {
   add(rig.limits.max_level, rig.limits.open_loop_margin, text_of(rig.limits.max_watts));
   const ControlSpec& c = rig.control;
   add(c.fade_s, static_cast<int>(c.fade_curve), c.correction_fade_s, c.settle_s, c.rounds, c.tolerance,
-      c.goal_tolerance, c.gain_min, c.gain_max);
+      c.goal_tolerance, c.gain_min, c.gain_max, c.fault_dips);
   if (rig.daylight) {
     const Daylight& d = *rig.daylight;
     add(static_cast<int>(d.sky), d.general_type, d.horizontal_lx, d.sun_normal_lx, text_of(d.towards_sun_world));

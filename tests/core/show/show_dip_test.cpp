@@ -17,8 +17,9 @@ using Eigen::VectorXd;
 
 constexpr std::size_t kLamps = 3;
 
-Rig three_lamps() {
+Rig three_lamps(bool fault_dips) {
   Rig rig;
+  rig.control.fault_dips = fault_dips;
   rig.name = "three-lamps";
   rig.buses.resize(1);
   rig.buses[0].name = "bus";
@@ -42,7 +43,8 @@ Rig three_lamps() {
 
 class DippedShow {
  public:
-  DippedShow() : light_{{180, 20, 1}, {20, 170, 1}, {1, 1, 190}}, show_(three_lamps(), model()) {
+  explicit DippedShow(bool fault_dips = true)
+      : light_{{180, 20, 1}, {20, 170, 1}, {1, 1, 190}}, show_(three_lamps(fault_dips), model()) {
     show_.apply(now_, std::vector<double>(kLamps, 0.5));
   }
   /// Until so() or for so long; returns whether it came to that.
@@ -110,6 +112,18 @@ TEST(ShowDip, ADeadLampIsDimmedAndNamedAndTheLightComesBack) {
   EXPECT_NE(show.told().find("when lamp \"lamp-2\" was dimmed by 20 %, no luxmeter followed"), std::string::npos)
       << show.told();
   EXPECT_LE(show.most_share_of_limit_, 1);
+}
+
+TEST(ShowDip, WhereTheRigFileForbidsItNoLampIsDimmedAndTheAlarmSaysThatItWouldTell) {
+  DippedShow show(false);
+  show.run(60);
+  const std::vector<double> before = show.levels();
+  show.dead_ = 2;
+  // The others may be corrected for what is missing, but are never dimmed for it.
+  EXPECT_FALSE(show.run(120, [&] { return show.levels()[2] < 0.9 * before[2]; }));
+  EXPECT_EQ(show.told().find("either "), 0u) << show.told();
+  EXPECT_NE(show.told().find("dimming lamp \"lamp-2\" for 8 s would tell more"), std::string::npos) << show.told();
+  EXPECT_NE(show.told().find("fault_dips"), std::string::npos) << show.told();
 }
 
 TEST(ShowDip, ABlackoutEndsItAndTheLampComesBackAsBefore) {
