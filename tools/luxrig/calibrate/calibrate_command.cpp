@@ -19,6 +19,7 @@
 #include "tools/luxrig/calibrate/by_hand.h"
 #include "tools/luxrig/calibrate/by_heads.h"
 #include "tools/luxrig/calibrate/daemon_rig.h"
+#include "tools/luxrig/calibrate/head_motions.h"
 #include "tools/luxrig/calibrate/heads_by_meters.h"
 #include "tools/luxrig/calibrate/measuring.h"
 #include "tools/luxrig/calibrate/simulated_run.h"
@@ -174,8 +175,12 @@ Result<std::vector<MeasuredHead>> by_heads(const Measuring& measuring) {
   auto heads = measuring.camera ? measure_heads(measuring.session, measuring.camera->camera,
                                                 measuring.seen->found.camera, measuring.daemon, measuring.stop)
                                 : measure_heads_by_meters(measuring.session, measuring.daemon, measuring.stop);
-  if (heads)
-    for (const MeasuredHead& head : *heads) fmt::print("{}\n", words_of(rig, head));
+  if (!heads) return heads;
+  if (auto timed = measure_motions(measuring.session, measuring.daemon, measuring.stop, *heads); !timed) {
+    if (timed.error().cause == Cause::cancelled) return tl::unexpected(timed.error());
+    fmt::print(stderr, "luxrig: heads are not timed: {}\n", timed.error().detail);  // what was found of them stays
+  }
+  for (const MeasuredHead& head : *heads) fmt::print("{}\n", words_of(rig, head));
   return heads;
 }
 
