@@ -171,7 +171,6 @@ Result<void> by_camera(Measuring& measuring) {
 /// How the rig's heads hang and turn, told as it is found: by the camera if one is used, else by the luxmeters.
 Result<std::vector<MeasuredHead>> by_heads(const Measuring& measuring) {
   const Rig& rig = measuring.session.rig;
-  if (const std::string dim = limited_light_of(rig); !dim.empty()) fmt::print("Heads are turned {}.\n", dim);
   auto heads = measuring.camera ? measure_heads(measuring.session, measuring.camera->camera,
                                                 measuring.seen->found.camera, measuring.daemon, measuring.stop)
                                 : measure_heads_by_meters(measuring.session, measuring.daemon, measuring.stop);
@@ -181,6 +180,10 @@ Result<std::vector<MeasuredHead>> by_heads(const Measuring& measuring) {
     fmt::print(stderr, "luxrig: heads are not timed: {}\n", timed.error().detail);  // what was found of them stays
   }
   for (const MeasuredHead& head : *heads) fmt::print("{}\n", words_of(rig, head));
+  const bool some_refused = std::any_of(heads->begin(), heads->end(),
+                                        [](const MeasuredHead& head) { return head.result.refused.has_value(); });
+  if (const std::string dim = limited_light_of(rig); some_refused && !dim.empty())
+    fmt::print("Heads are turned {}. That may be too dim to find them.\n", dim);
   return heads;
 }
 
