@@ -18,6 +18,8 @@ using Json = nlohmann::json;
 constexpr const char* kRemedy = "measure the rig again with luxrig calibrate";
 /// Farther off, the rig file describes another lamp, another paint or another place.
 constexpr double kMostScale = 4, kMostAskew_deg = 20, kMostSpeed_deg_s = 2000, kMostSettling_s = 60;
+/// However unsure a measured speed is, so much of it is believed.
+constexpr double kSurelySpeed = 0.3;
 constexpr double kMostRatio = 10, kMostOffset_m = 5, kMostTurn_deg = 180;
 /// The scale of a camera's light may be any: shares of full scale, or cd/m².
 constexpr double kMostResponse = 1e6, kMostDistortion = 1, kMostLens = 10, kMostStray = 1, kLeastFov_deg = 0.1;
@@ -132,9 +134,14 @@ void turn_as_found(const CalibratedHead& head, Fixture& fixture) {
   };
   fixture.joints = within(fixture.joints);
   if (fixture.park) fixture.park = within(*fixture.park);
+  // Who waits for it should not wait too short: no faster, and no sooner still, than two standard errors allow.
   const auto speed_rad_s = [](double stated_rad_s, const Known& measured_deg_s, double scale) {
-    return measured_deg_s.standard_error > 0 ? rad_from_deg(measured_deg_s.value) : stated_rad_s * std::abs(scale);
+    if (!(measured_deg_s.standard_error > 0)) return stated_rad_s * std::abs(scale);
+    return rad_from_deg(
+        std::max(measured_deg_s.value - 2 * measured_deg_s.standard_error, kSurelySpeed * measured_deg_s.value));
   };
+  if (head.settling_s.standard_error > 0)
+    fixture.settles_s = head.settling_s.value + 2 * head.settling_s.standard_error;
   fixture.pan_speed_rad_s = speed_rad_s(fixture.pan_speed_rad_s, head.pan_speed_deg_s, map.pan_scale);
   fixture.tilt_speed_rad_s = speed_rad_s(fixture.tilt_speed_rad_s, head.tilt_speed_deg_s, map.tilt_scale);
   fixture.joint_map = map;

@@ -7,7 +7,7 @@
 
 namespace luxrig {
 
-/// Seconds from its first movement until the fixture has arrived at `to`. The caller adds kHeadDelay_s before that.
+/// Seconds from its first movement until the fixture has arrived at `to`. The caller adds head_delay_s() before that.
 /// Without `from`, the longest time from any posture.
 [[nodiscard]] double travel_s(const Fixture& fixture, const std::optional<Joints>& from, const Joints& to);
 

@@ -80,6 +80,8 @@ struct Fixture {
   std::optional<JointMap> joint_map{};               ///< by a calibration; none = what is sent is where it turns
   double pan_speed_rad_s = 0, tilt_speed_rad_s = 0;  ///< only if it moves, > 0
   double zoom_speed_rad_s = 0;                       ///< of the beam angle; only if it zooms, > 0
+  double settles_s =
+      0;  ///< by a calibration: from an order, beside its way, until its beam stands still; 0 = not known
   std::size_t bus = 0;
   Patch patch;
   std::optional<AxesPatch> axes{};    ///< if none, pan and tilt are slots of `patch`

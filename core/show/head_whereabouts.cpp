@@ -9,9 +9,6 @@
 namespace luxrig {
 namespace {
 
-constexpr Duration kObeysWithin = std::chrono::milliseconds(500);
-static_assert(kHeadDelay_s == 0.5);
-
 /// Moves both bounds towards the ordered range; they take in at once any part of it outside them.
 void close_in(double& least, double& most, double told_least, double told_most, double way) {
   least = std::min(told_least, least + way);
@@ -26,7 +23,8 @@ HeadWhereabouts::HeadWhereabouts(const Fixture& fixture)
       box_(travel_),
       speed_{fixture.pan_speed_rad_s, fixture.tilt_speed_rad_s, fixture.zoom_speed_rad_s},
       axes_(fixture.axes),
-      reset_(from_seconds(fixture.reset_s)) {}
+      reset_(from_seconds(fixture.reset_s)),
+      obeys_within_(from_seconds(head_delay_s(fixture))) {}
 
 void HeadWhereabouts::lose(Time now) {
   box_ = travel_;
@@ -55,10 +53,10 @@ void HeadWhereabouts::step(Time now, const JointBox& told, bool obeys) {
   } else {
     told_.push_back({now, told});
   }
-  while (told_.size() > 1 && told_.front().at + kObeysWithin < now) told_.pop_front();
+  while (told_.size() > 1 && told_.front().at + obeys_within_ < now) told_.pop_front();
   JointBox window = told_.front().box;
   for (const Told& one : told_) window = window.joined(one.box);
-  const Time begin = std::max(last_, *obeys_since_ + kObeysWithin);
+  const Time begin = std::max(last_, *obeys_since_ + obeys_within_);
   const double passed_s = std::max(0.0, to_seconds(now - begin));
   close_in(box_.least.pan_rad, box_.most.pan_rad, window.least.pan_rad, window.most.pan_rad, speed_.pan_rad * passed_s);
   close_in(box_.least.tilt_rad, box_.most.tilt_rad, window.least.tilt_rad, window.most.tilt_rad,
@@ -93,7 +91,7 @@ void HeadWhereabouts::step_axes(Time now, const JointBox& told, bool obeys) {
                   way(to.tilt_rad, box_.least.tilt_rad, box_.most.tilt_rad),
                   {speed_.pan_rad, axes_->pan.acceleration_rad_s2}, {speed_.tilt_rad, axes_->tilt.acceleration_rad_s2});
     line_to_ = to;
-    arrives_ = now + from_seconds(move.seconds) + kObeysWithin + (std::exchange(lost_, false) ? reset_ : Duration{});
+    arrives_ = now + from_seconds(move.seconds) + obeys_within_ + (std::exchange(lost_, false) ? reset_ : Duration{});
   }
   if (line_to_ && now >= arrives_) box_ = JointBox::at(*line_to_);
 }

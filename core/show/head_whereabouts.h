@@ -1,12 +1,13 @@
 #pragma once
 /// Where a head can be now, from its orders and its speed: heads on DMX report nothing.
 ///
-/// A head obeys within kHeadDelay_s (its ramps included). Each joint of a head on DMX then turns by itself, at its
+/// A head obeys within head_delay_s() (its ramps included). Each joint of a head on DMX then turns by itself, at its
 /// stated speed or faster. So the lower bound of a joint climbs at that speed towards the least angle ordered within
-/// the last kHeadDelay_s, and drops to it at once. The upper bound mirrors this. A head with axes turns both joints in
+/// the last head_delay_s(), and drops to it at once. The upper bound mirrors this. A head with axes turns both joints in
 /// step (head_move.h): until it must have arrived, it is on a straight line from somewhere it could be when it got the
 /// order.
 
+#include <algorithm>
 #include <deque>
 #include <optional>
 
@@ -16,6 +17,8 @@ namespace luxrig {
 
 /// Delay from a command to a head's first movement, including its ramps.
 inline constexpr double kHeadDelay_s = 0.5;
+/// Of this head: longer if a calibration found so.
+[[nodiscard]] inline double head_delay_s(const Fixture& head) { return std::max(kHeadDelay_s, head.settles_s); }
 
 class HeadWhereabouts {
  public:
@@ -45,7 +48,8 @@ class HeadWhereabouts {
   Joints speed_;  ///< rad/s of each joint
   std::optional<AxesPatch> axes_;
   Duration reset_{};
-  std::deque<Told> told_;  ///< orders of the last kHeadDelay_s, oldest first
+  Duration obeys_within_{};
+  std::deque<Told> told_;  ///< orders of that time, oldest first
   std::optional<Joints> line_to_;
   std::optional<Time> obeys_since_;
   Time last_{}, arrives_{};

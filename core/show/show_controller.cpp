@@ -191,7 +191,8 @@ void ShowController::State::take_look(Time now) {
       other_light = true;
     if (!turns(f)) continue;
     any = true;
-    wait_s = std::max(wait_s, travel_s(rig.fixtures[f], program.joints[f], awaited->look.joints[f]) + kHeadDelay_s);
+    wait_s = std::max(
+        wait_s, travel_s(rig.fixtures[f], program.joints[f], awaited->look.joints[f]) + head_delay_s(rig.fixtures[f]));
     program.joints[f] = awaited->look.joints[f];
   }
   take_points(awaited->look);

@@ -17,7 +17,7 @@ void ShowController::State::first_turn(Time now, std::span<const Joints> joints)
   double wait_s = 0;
   for (std::size_t f = 0; f < rig.fixtures.size(); ++f)
     if (const Fixture& fixture = rig.fixtures[f]; fixture.moves)
-      wait_s = std::max(wait_s, fixture.reset_s + travel_s(fixture, std::nullopt, joints[f]) + kHeadDelay_s);
+      wait_s = std::max(wait_s, fixture.reset_s + travel_s(fixture, std::nullopt, joints[f]) + head_delay_s(fixture));
   arrive = now + from_seconds(wait_s);
 }
 

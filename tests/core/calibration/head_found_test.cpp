@@ -169,5 +169,20 @@ TEST(JointMap, IsItsOwnInverseFromEachSide) {
   }
 }
 
+TEST(FoundHead, TurnsAsFastAndSettlesAsLateAsWasMeasuredAtLeast) {
+  HeadPose pose;
+  pose.stated.translation_m = Vec3(1, 2, 3);
+  Calibration calibration = calibration_of(pose);
+  CalibratedHead& head = *calibration.fixtures[0].head;
+  head.pan_speed_deg_s = {100, 5};
+  head.tilt_speed_deg_s = {60, 40};
+  head.settling_s = {0.7, 0.1};
+  const auto rig = calibrated(rig_of_one_head(pose.stated), calibration, "c.json");
+  ASSERT_TRUE(rig);
+  EXPECT_NEAR(rig->fixtures[0].pan_speed_rad_s, rad_from_deg(90), 1e-9) << "two standard errors less";
+  EXPECT_NEAR(rig->fixtures[0].tilt_speed_rad_s, rad_from_deg(18), 1e-9) << "hardly known";
+  EXPECT_NEAR(rig->fixtures[0].settles_s, 0.9, 1e-9);
+}
+
 }  // namespace
 }  // namespace luxrig

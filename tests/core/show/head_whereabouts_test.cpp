@@ -44,6 +44,21 @@ TEST(HeadWhereabouts, StartsUnknownAndSettlesOnceTheLongestMoveIsOver) {
   EXPECT_NEAR(arrived_s, 3.0, 0.03);
 }
 
+TEST(HeadWhereabouts, WaitsLongerForAHeadThatWasFoundToNeedLonger) {
+  Fixture slow = some_head();
+  slow.settles_s = 1.2;
+  HeadWhereabouts where(slow);
+  const Joints told{1, 0.5, 0};
+  double arrived_s = -1;
+  for (int i = 0; i <= 400 && arrived_s < 0; ++i) {
+    where.step(at(0.02 * i), JointBox::at(told), true);
+    if (where.box() == JointBox::at(told)) arrived_s = 0.02 * i;
+  }
+  EXPECT_NEAR(arrived_s, 2.5 + 1.2, 0.03);
+  slow.settles_s = 0.1;
+  EXPECT_EQ(head_delay_s(slow), kHeadDelay_s) << "never less than any head may need";
+}
+
 TEST(HeadWhereabouts, ContainsHeadsOfEverySpeedAndDelay) {
   Random random(11);
   double narrowest = 100;

@@ -155,6 +155,10 @@ void put_heads(const Rig& rig, const std::vector<MeasuredHead>& heads, const Cal
     const auto head = std::find_if(heads.begin(), heads.end(), [&](const MeasuredHead& h) { return h.fixture == of; });
     if (head != heads.end() && !head->result.refused) {
       put_head(head->result.fit, *entry);
+      if (const auto was = before ? entry_of(*before, name) : decltype(entry_of(*before, name)){};
+          before && was != before->fixtures.end() && was->head)
+        put_motion({was->head->pan_speed_deg_s, was->head->tilt_speed_deg_s, was->head->settling_s}, *entry->head);
+      put_motion(head->motion, *entry->head);
       continue;
     }
     if (!before) continue;
@@ -177,12 +181,21 @@ std::string words_of(const Rig& rig, const MeasuredHead& head) {
     most_rad = std::max(most_rad, off_sight(result.fit, sighting).norm());
   const HeadVector& found = result.fit.pose.parameters;
   const std::string kind = words_of(result.fit.kind);
-  return fmt::format(
+  std::string text = fmt::format(
       "Head \"{}\" is found{}{}: {:.1f} cm and {:.1f}° off the rig file, play {:.2f}° in pan and {:.2f}° in tilt. The "
       "farthest of {} places kept for the test was missed by {:.2f}°; {:.0f} s.",
       name, kind.empty() ? "" : ", it ", kind, 100 * found.segment<3>(kHeadOffset).norm(),
       deg_from_rad(found.segment<3>(kHeadTurn).norm()), deg_from_rad(found[kHeadPanPlay]),
       deg_from_rad(found[kHeadTiltPlay]), result.held_out.size(), deg_from_rad(most_rad), head.seconds);
+  const HeadMotion& motion = head.motion;
+  const auto add = [&](const char* what, const Known& known, const char* unit) {
+    if (known.standard_error > 0)
+      text += fmt::format(" {} {:.3g} ± {:.2g} {}.", what, known.value, known.standard_error, unit);
+  };
+  add("It pans at", motion.pan_speed_deg_s, "°/s");
+  add("It tilts at", motion.tilt_speed_deg_s, "°/s");
+  add("Beside its way it needs", motion.settling_s, "s to stand still");
+  return text;
 }
 
 }  // namespace luxrig

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/calibration/head_fit.h"
+#include "core/calibration/head_motion.h"
 #include "core/estimation/calibration.h"
 #include "core/picture/picture.h"
 #include "core/tasks/session.h"
@@ -18,6 +19,7 @@ struct MeasuredHead {
   std::size_t fixture = 0;  ///< of the rig; the first of its housing
   HeadResult result;
   double seconds = 0;  ///< of rig time
+  HeadMotion motion{};  ///< as far as it was measured
 };
 
 /// The heads of a rig, each by the first fixture of its housing.

@@ -19,6 +19,7 @@
 #include "tools/luxrig/calibrate/by_hand.h"
 #include "tools/luxrig/calibrate/by_heads.h"
 #include "tools/luxrig/calibrate/daemon_rig.h"
+#include "tools/luxrig/calibrate/head_motions.h"
 #include "tools/luxrig/calibrate/heads_by_meters.h"
 #include "tools/luxrig/calibrate/measuring.h"
 #include "tools/luxrig/calibrate/simulated_run.h"
@@ -170,7 +171,6 @@ Result<void> by_cameras(Measuring& measuring) {
 /// How the rig's heads hang and turn, told as it is found: by the first camera if any are used, else by the luxmeters.
 Result<std::vector<MeasuredHead>> by_heads(const Measuring& measuring) {
   const Rig& rig = measuring.session.rig;
-  if (const std::string dim = limited_light_of(rig); !dim.empty()) fmt::print("Heads are turned {}.\n", dim);
   const auto& each = measuring.seen.each;
   const auto seen = std::find_if(each.begin(), each.end(), [](const auto& one) { return one.has_value(); });
   auto heads = seen != each.end()
@@ -178,8 +178,16 @@ Result<std::vector<MeasuredHead>> by_heads(const Measuring& measuring) {
                                    measuring.cameras.each[static_cast<std::size_t>(seen - each.begin())].camera,
                                    (*seen)->found.camera, measuring.daemon, measuring.stop)
                    : measure_heads_by_meters(measuring.session, measuring.daemon, measuring.stop);
-  if (heads)
-    for (const MeasuredHead& head : *heads) fmt::print("{}\n", words_of(rig, head));
+  if (!heads) return heads;
+  if (auto timed = measure_motions(measuring.session, measuring.daemon, measuring.stop, *heads); !timed) {
+    if (timed.error().cause == Cause::cancelled) return tl::unexpected(timed.error());
+    fmt::print(stderr, "luxrig: heads are not timed: {}\n", timed.error().detail);  // what was found of them stays
+  }
+  for (const MeasuredHead& head : *heads) fmt::print("{}\n", words_of(rig, head));
+  const bool some_refused = std::any_of(heads->begin(), heads->end(),
+                                        [](const MeasuredHead& head) { return head.result.refused.has_value(); });
+  if (const std::string dim = limited_light_of(rig); some_refused && !dim.empty())
+    fmt::print("Heads are turned {}. That may be too dim to find them.\n", dim);
   return heads;
 }
 

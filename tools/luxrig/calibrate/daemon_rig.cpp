@@ -56,6 +56,14 @@ Fault stopped() { return fault(Cause::cancelled, "stopped"); }
 DaemonRig::DaemonRig(HttpPeer daemon, const Rig& rig, std::shared_ptr<int> lock)
     : daemon_(std::move(daemon)), rig_(&rig), lock_(std::move(lock)), samples_(rig.luxmeters.size()) {}
 
+void DaemonRig::forget_samples() {
+  // The last one stays, so that it is not taken for a new one.
+  for (auto& samples : samples_)
+    if (!samples.empty()) samples.erase(samples.begin(), samples.end() - 1);
+}
+
+double DaemonRig::clock_s() { return now_s(); }
+
 Result<DaemonRig> DaemonRig::of(const ClientArguments& client, const Rig& rig) {
   auto daemon = daemon_on(client.port, client.token);
   if (!daemon) return tl::unexpected(daemon.error());

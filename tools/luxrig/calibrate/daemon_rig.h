@@ -70,6 +70,14 @@ class DaemonRig {
   /// The same for lights that the caller sets: set(k) returns when the k-th stands still. Per light, per luxmeter.
   [[nodiscard]] Result<std::vector<std::vector<std::optional<SteadyReading>>>> read_lights(
       std::size_t count, const std::function<Result<void>(std::size_t light)>& set, const std::stop_token& stop);
+  /// Readings seen since forget_samples() or the last light that was set to be read; times are those of clock_s().
+  [[nodiscard]] const std::vector<TimedLux>& samples(std::size_t luxmeter) const { return samples_[luxmeter]; }
+  void forget_samples();
+  [[nodiscard]] static double clock_s();
+  /// How late a luxmeter is; none = not measured, or it did not see the light then.
+  [[nodiscard]] std::optional<MeterTiming> timing(std::size_t luxmeter) const {
+    return timing_ ? (*timing_)[luxmeter] : std::nullopt;
+  }
   /// Keeps looking for so long.
   [[nodiscard]] Result<void> watch(double seconds, const std::stop_token& stop);
   /// As sent now, per fixture.

@@ -18,6 +18,8 @@ using Readings = std::vector<std::vector<double>>;
 
 /// Below such a share of its light, a head is too dim for luxmeters.
 constexpr double kDimmest = 1e-4;
+/// From a head's arrival at an aim that it only comes through to the next order.
+constexpr std::chrono::milliseconds kCameThrough{100};
 
 class MeterHeads {
  public:
@@ -63,7 +65,9 @@ class MeterHeads {
             const auto arrives =
                 turner_.send(fixture, {step.joints.pan_rad, step.joints.tilt_rad, zoom_of(fixture)}, step.lit);
             if (!arrives) return tl::unexpected(arrives.error());
-            if (auto waited = turner_.wait_until(*arrives); !waited) return waited;
+            // What is only come through need not be waited for as long as light that is read.
+            const auto until = step.read ? *arrives : *arrives - HeadTurner::kObeys + kCameThrough;
+            if (auto waited = turner_.wait_until(until); !waited) return waited;
           }
           return steps[read[light]].lit ? see_level(fixture) : Result<void>{};
         },
