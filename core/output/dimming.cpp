@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <variant>
 
 namespace luxrig {
 namespace {
@@ -62,6 +63,27 @@ double drive_from_level(DimmerCurve curve, double level) {
 double share_at_level(const MeasuredCurve& curve, double level) { return along(curve, level, kLevelOf, kShareOf); }
 
 double level_of_share(const MeasuredCurve& curve, double share) { return along(curve, share, kShareOf, kLevelOf); }
+
+double smallest_drive_step(const Fixture& fixture) {
+  if (const auto* modbus = std::get_if<ModbusPatch>(&fixture.patch)) {
+    if (modbus->coil) return 1;
+    const int values = std::abs(modbus->full_scale_raw - modbus->dark_raw);
+    return modbus->format.number == RegisterNumber::floating || values == 0 ? 0 : 1.0 / values;
+  }
+  const auto& slots = std::get<DmxPatch>(fixture.patch).slots;
+  const auto coarse =
+      std::find_if(slots.begin(), slots.end(), [](const DmxSlot& slot) { return slot.use == SlotUse::dimmer; });
+  if (coarse == slots.end()) return 0;
+  double values = 255;
+  for (const DmxSlot& slot : slots) {
+    if (slot.cell != coarse->cell) continue;
+    if (slot.use == SlotUse::dimmer_fine) values = std::max(values, 65535.0);
+    if (slot.use == SlotUse::dimmer_ultra) values = 16777215;
+  }
+  const DmxTravel& travel = coarse->travel;
+  const double used = std::abs(travel.at_end - travel.at_start);
+  return used > 0 ? (1 - travel.least) / (used * values) : 0;
+}
 
 double drive_for(const Fixture& fixture, double level) {
   return drive_from_level(fixture.dimmer_curve, level_of_share(fixture.measured_curve, level));

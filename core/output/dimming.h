@@ -14,6 +14,9 @@ namespace luxrig {
 [[nodiscard]] double share_at_level(const MeasuredCurve& curve, double level);
 [[nodiscard]] double level_of_share(const MeasuredCurve& curve, double share);
 
+/// The smallest change of drive that its patch can send; 0 = as small as one likes, or far smaller than any lamp shows.
+[[nodiscard]] double smallest_drive_step(const Fixture& fixture);
+
 /// The drive that gives this share of the fixture's full light.
 [[nodiscard]] double drive_for(const Fixture& fixture, double level);
 /// The share of its full light that this drive gives.

@@ -14,6 +14,7 @@ namespace luxrig {
 struct ByHandTimes {
   std::optional<double> for_s{};   ///< released then; none = by a person
   std::optional<double> fade_s{};  ///< its own fade; none = the rig's
+  bool measuring = false;          ///< see ShowController::hold
 };
 
 struct ByHand {

@@ -94,10 +94,16 @@ void HealthWatch::garbled(std::size_t luxmeter, Time now) {
   meters_[luxmeter].was_garbled = true;
 }
 
-void HealthWatch::judged(std::size_t luxmeter, Time now, const std::string& why) {
+void HealthWatch::judged(std::size_t luxmeter, Time now, const std::string& why, bool stuck) {
   Meter& meter = meters_[luxmeter];
   if (meter.implausible.empty() && !why.empty()) meter.implausible_since = now;
   meter.implausible = why;
+  meter.stuck = stuck;
+}
+
+bool HealthWatch::any_meter_gone() const {
+  return std::any_of(meters_.begin(), meters_.end(),
+                     [](const Meter& meter) { return !meter.bypassed && meter.trust.lost() && !meter.disagrees; });
 }
 
 bool HealthWatch::any_meter_lost() const {
@@ -256,6 +262,7 @@ void HealthWatch::step_meter(Time now, std::size_t luxmeter, bool faulted, Durat
   const bool missed = counted != nullptr && counted->missed;
   // Silence and implausible readings have already lasted long enough when they are noticed.
   meter.trust.step(now, faulted || silent || implausible, missed, heard, silent || implausible ? Duration{} : patience);
+  if (faulted || silent || implausible) meter.disagrees = implausible && !faulted && !silent && !meter.stuck;
   if (faulted || meter.bypassed) return;  // the device or its bus has its own alarm
   if (!silent && !implausible) {
     if (meter.trust.lost()) alarms_.push_back(alarm_of_doubted(meter.name, meter.trust));

@@ -39,8 +39,8 @@ class HealthWatch {
   void heard(std::size_t luxmeter, Time taken);
   /// The meter sent something that is no reading (NaN, negative).
   void garbled(std::size_t luxmeter, Time now);
-  /// The model's judgement of the meter's settled reading. why: empty = believed.
-  void judged(std::size_t luxmeter, Time now, const std::string& why);
+  /// The model's judgement of the meter's settled reading. why: empty = believed. stuck: it does not follow the light.
+  void judged(std::size_t luxmeter, Time now, const std::string& why, bool stuck = false);
 
   /// How long a device may be reported as faulted before it is lost. Alarms do not wait.
   struct Patience {
@@ -66,6 +66,8 @@ class HealthWatch {
   /// Its motion bus or one of its axes is lost: it cannot be turned.
   [[nodiscard]] bool motion_lost(std::size_t fixture) const { return motion_lost_[fixture]; }
   [[nodiscard]] bool any_meter_lost() const;
+  /// The same, for another cause than that it shows light that the model does not allow: it is silent, faulted or stuck.
+  [[nodiscard]] bool any_meter_gone() const;
   [[nodiscard]] bool meter_lost(std::size_t luxmeter) const {
     return meters_[luxmeter].trust.lost() || meters_[luxmeter].bypassed;
   }
@@ -89,6 +91,8 @@ class HealthWatch {
     bool was_garbled = false;
     std::string implausible;  ///< why; empty = believed
     Time implausible_since{};
+    bool stuck = false;
+    bool disagrees = false;  ///< what it was lost for last: it answers, and the model does not allow what it shows
     Trust trust;
     bool bypassed = false;
   };

@@ -259,6 +259,7 @@ void ShowController::State::start_cue(Time now, std::vector<double> levels, std:
 
 void ShowController::State::go_to_asked(Time now, std::vector<double> present, std::optional<double> fade_s) {
   cue = estimator.within_limits(asked, now);
+  if (measuring) keep_measured_limits(now, *cue);
   std::vector<double> sent = *cue;
   lost.put_in(sent, safe_levels());
   for (std::size_t f = 0; f < sent.size(); ++f)
@@ -284,6 +285,7 @@ void ShowController::State::fade_to_safe(Time now) {
   fade(now, std::move(present), limited_safe_levels(now), rig.safe.fade_s, rig.control.fade_curve);
   progress.converged = false;
   progress.breaches.clear();
+  safe_is_read = false;
   enter(Phase::safe_fading, now);
 }
 
@@ -292,7 +294,9 @@ void ShowController::State::look_at_failures(Time now) {
   const bool waits = !rig.startup.after_loss && limits_bear_waiting(now);
   health.step(now, {waits ? kPatience : Duration{}, kPatience});
   const bool was_failing = failing;
-  failing = too_much_lost() || (rig.safe.on_meter_loss && health.any_meter_lost());
+  watch_measuring(now);
+  failing =
+      too_much_lost() || (rig.safe.on_meter_loss && (measuring ? health.any_meter_gone() : health.any_meter_lost()));
   if (was_failing && !failing) healthy_since = now;
   if (failing) {
     if (std::string cause = health.cause(too_much_lost()); !cause.empty()) failure = std::move(cause);
@@ -390,6 +394,8 @@ void ShowController::apply(Time now, Look look, LightModel model) {
   std::vector<double> wanted = state.wanted_levels(look.levels);
   state.asked_safe = false;
   state.afresh = true;
+  state.beyond_model = 1;
+  state.measured_beyond.reset();
   state.scale.forget_drift();
   state.faults.forget();
   state.first_turn(now, look.joints);

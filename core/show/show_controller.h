@@ -63,6 +63,7 @@ struct FixtureStatus {
   bool kept_dark = false;                    ///< its beam could meet a keep-out zone
   std::string waits_for{};                   ///< if parked or kept dark: what lights it again, for a person
   bool aimed_by_hand = false;                ///< see ShowController::aim
+  bool dipped = false;                       ///< dimmed for seconds to tell what is wrong; see `fault_dips`
   bool identified = false;                   ///< blinks or nods, so that a person sees which one it is
 };
 
@@ -93,6 +94,9 @@ struct ShowStatus {
   VerdictCounts goals;
   int limits_kept = 0, limits_exceeded = 0, limits_unknown = 0;
   bool blackout = false;
+  /// In the safe look only since luxmeters show what the model does not allow, and they have been read there: the rig may
+  /// be measured from here (hold() with `measuring`).
+  bool may_be_measured = false;
   /// An accepted plan is not in force yet: something has failed, a desk may have the light, or heads go dark first.
   bool plan_waits = false;
   bool resting = false;  ///< parked heads have arrived
@@ -141,11 +145,17 @@ class ShowController {
   /// Sets levels and goals by hand. They stay until released, through corrections and later plans, within limits. The
   /// rest is solved around them at once, as far as the model knows. Blackout, failures and the safe look override them
   /// while they last. Before the first look they are only stored for it. All or none: refused with a reason if one of
-  /// them is invalid, and after go_safe. fade_s: what is held fades so long; none = as the rig's looks.
-  Result<void> hold(Time now, std::span<const ByHand> wanted, std::optional<double> fade_s = {});
+  /// them is invalid, and after go_safe. times.fade_s: what is held fades so long; none = as the rig's looks; for_s does
+  /// not count here (ByHand::until).
+  /// times.measuring: the light is held to be measured, until a lamp is released or held otherwise. With `on_meter_loss`,
+  /// luxmeters that show what the model does not allow then neither send the rig to its safe look nor keep it there, as
+  /// the model is what is measured. Limits are kept by the model, and by how far readings are beyond it; a reading above
+  /// its point's limit ends it in the safe look. Refused unless every lamp is held, and while anything else has failed.
+  Result<void> hold(Time now, std::span<const ByHand> wanted, const ByHandTimes& times = {});
   /// Levels go back to their values before, goals to the plan's, and everything is solved again. Aims by hand end.
-  /// Returns the number released.
-  std::size_t release(Time now, std::span<const std::size_t> fixtures, std::span<const std::size_t> points);
+  /// Returns the number released. fade_s: as for hold().
+  std::size_t release(Time now, std::span<const std::size_t> fixtures, std::span<const std::size_t> points,
+                      std::optional<double> fade_s = {});
   /// All settings held now; `why` is empty (status() fills it).
   [[nodiscard]] std::vector<ByHand> by_hand() const;
 

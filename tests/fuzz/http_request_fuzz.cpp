@@ -42,7 +42,14 @@ luxrig::HttpHandlers checking_handlers() {
     return luxrig::Result<std::string>("held");
   };
   handlers.goal = handlers.level;
-  handlers.release = [](const std::vector<std::string>&) { return luxrig::Result<std::string>("released"); };
+  handlers.levels = [](const std::vector<std::pair<std::string, double>>& levels, const luxrig::ByHandTimes& times) {
+    LUXRIG_CHECK(!levels.empty(), "no levels");
+    LUXRIG_CHECK(!times.fade_s || (*times.fade_s >= 0.1 && *times.fade_s <= 600), "fades in {} s", *times.fade_s);
+    return luxrig::Result<std::string>("held");
+  };
+  handlers.release = [](const std::vector<std::string>&, std::optional<double>) {
+    return luxrig::Result<std::string>("released");
+  };
   handlers.bypass = [](const std::vector<std::string>&, bool) { return luxrig::Result<std::string>("bypassed"); };
   handlers.question = [](const luxrig::HandQuestion& question, double seconds) {
     LUXRIG_CHECK(!question.id.empty() && question.text.size() <= 4 * 400, "a question of {}", question.text.size());

@@ -81,7 +81,7 @@ class SteppedSubject final : public Subject {
   bool hold(std::size_t lamp, double level) override {
     return handlers_.level({lamp_name(kOverWorks[lamp])}, level, {}).has_value();
   }
-  bool release() override { return handlers_.release({}).has_value(); }
+  bool release() override { return handlers_.release({}, {}).has_value(); }
   bool nonsense(std::size_t kind) override {
     switch (kind) {
       case 0:

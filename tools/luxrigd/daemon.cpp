@@ -345,7 +345,12 @@ HttpHandlers Daemon::handlers() {
   handlers.goal = [this](const std::vector<std::string>& names, double lux, const ByHandTimes& times) {
     return hold(ByHand::What::goal, names, lux, times);
   };
-  handlers.release = [this](const std::vector<std::string>& names) { return release(names); };
+  handlers.levels = [this](const std::vector<std::pair<std::string, double>>& levels, const ByHandTimes& times) {
+    return hold_levels(levels, times);
+  };
+  handlers.release = [this](const std::vector<std::string>& names, std::optional<double> fade_s) {
+    return release(names, fade_s);
+  };
   handlers.bypass = [this](const std::vector<std::string>& names, bool on) { return bypass(names, on); };
   handlers.question = [this](const HandQuestion& question, double seconds) {
     return questions_.ask(question, from_seconds(seconds), now());

@@ -122,7 +122,11 @@ class Daemon {
   Result<void> park(const std::vector<std::string>& names);
   Result<std::string> hold(ByHand::What what, const std::vector<std::string>& names, double value,
                            const ByHandTimes& times);
-  Result<std::string> release(const std::vector<std::string>& names);
+  /// Each by its value.
+  Result<std::string> hold(const std::shared_ptr<const Session>& session, std::vector<ByHand> wanted,
+                           const ByHandTimes& times);
+  Result<std::string> hold_levels(const std::vector<std::pair<std::string, double>>& levels, const ByHandTimes& times);
+  Result<std::string> release(const std::vector<std::string>& names, std::optional<double> fade_s);
   Result<std::string> bypass(const std::vector<std::string>& names, bool on);
   void restore_bypassed(const std::vector<std::string>& saved, Resumed& resumed);
   [[nodiscard]] Checked<std::string> reload();

@@ -287,20 +287,42 @@ Result<std::string> Daemon::hold(ByHand::What what, const std::vector<std::strin
   auto wanted = what == ByHand::What::level ? luxrig::fixtures_called(session->rig, names)
                                             : luxrig::points_called(session->rig, names);
   if (!wanted) return tl::unexpected(wanted.error());
+  for (ByHand& one : *wanted) one.value = value;
+  return hold(session, std::move(*wanted), times);
+}
+
+/// A later one of the same fixture counts.
+Result<std::string> Daemon::hold_levels(const std::vector<std::pair<std::string, double>>& levels,
+                                        const ByHandTimes& times) {
+  const std::lock_guard one_at_a_time(change_mutex_);
+  const std::shared_ptr<const Session> session = this->session();
+  std::vector<ByHand> wanted;
+  for (const auto& [name, level] : levels) {
+    auto called = luxrig::fixtures_called(session->rig, {name});
+    if (!called) return tl::unexpected(called.error());
+    for (ByHand& one : *called) {
+      one.value = level;
+      wanted.push_back(one);
+    }
+  }
+  return hold(session, std::move(wanted), times);
+}
+
+Result<std::string> Daemon::hold(const std::shared_ptr<const Session>& session, std::vector<ByHand> wanted,
+                                 const ByHandTimes& times) {
   struct Held {
     Result<void> done;
     std::string text;
     std::vector<SavedByHand> all;
   };
-  const auto held =
-      ask_control_thread<Held>([this, &rig = session->rig, session, wanted = *wanted, value, times](Time at) -> Held {
+  const auto held = ask_control_thread<Held>(
+      [this, session, &rig = session->rig, wanted = std::move(wanted), times](Time at) -> Held {
         std::vector<ByHand> timed = wanted;
         for (ByHand& one : timed) {
-          one.value = value;
           one.since = at;
           if (times.for_s) one.until = at + from_seconds(*times.for_s);
         }
-        Held out{controller_.hold(at, timed, times.fade_s), {}, {}};
+        Held out{controller_.hold(at, timed, times), {}, {}};
         if (!out.done) return out;
         std::vector<ByHand> fresh = controller_.status(at).by_hand;
         std::erase_if(fresh, [&](const ByHand& one) { return one.since != at; });
@@ -315,7 +337,7 @@ Result<std::string> Daemon::hold(ByHand::What what, const std::vector<std::strin
   return held->text;
 }
 
-Result<std::string> Daemon::release(const std::vector<std::string>& names) {
+Result<std::string> Daemon::release(const std::vector<std::string>& names, std::optional<double> fade_s) {
   const std::lock_guard one_at_a_time(change_mutex_);
   const std::shared_ptr<const Session> session = this->session();
   auto wanted = anything_called(session->rig, names.empty() ? std::vector<std::string>{"*"} : names);
@@ -324,10 +346,10 @@ Result<std::string> Daemon::release(const std::vector<std::string>& names) {
     std::size_t count = 0;
     std::vector<SavedByHand> all;
   };
-  const auto released = ask_control_thread<Released>([this, session, wanted = *wanted](Time at) -> Released {
+  const auto released = ask_control_thread<Released>([this, session, wanted = *wanted, fade_s](Time at) -> Released {
     std::vector<std::size_t> fixtures, points;
     for (const ByHand& one : wanted) (one.what == ByHand::What::level ? fixtures : points).push_back(one.index);
-    const std::size_t count = controller_.release(at, fixtures, points);
+    const std::size_t count = controller_.release(at, fixtures, points, fade_s);
     return {count, held_by_hand(session->rig, at)};
   });
   if (!released) return tl::unexpected(Fault{Cause::timeout, {}, "the control loop did not answer", {}});

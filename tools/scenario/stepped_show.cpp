@@ -145,7 +145,7 @@ class SteppedVenue final : public Venue {
       case What::goal:
         return told(handlers_.goal(event.on, *event.value, {event.for_s, {}}));
       case What::release:
-        return told(handlers_.release(event.on));
+        return told(handlers_.release(event.on, {}));
       case What::park:
         return told(handlers_.park(event.on));
       case What::bypass:

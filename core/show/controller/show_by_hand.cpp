@@ -17,7 +17,7 @@ constexpr double kSameLevel = 1e-3;
 
 }  // namespace
 
-Result<void> ShowController::State::hold(Time now, std::span<const ByHand> wanted, std::optional<double> fade_s) {
+Result<void> ShowController::State::hold(Time now, std::span<const ByHand> wanted, const ByHandTimes& times) {
   if (asked_safe) return refusal("the show has ended in its safe look: apply a plan first");
   for (const ByHand& one : wanted) {
     const bool level = one.what == ByHand::What::level;
@@ -25,15 +25,19 @@ Result<void> ShowController::State::hold(Time now, std::span<const ByHand> wante
     if (const std::string wrong = one.complaint(level && rig.fixtures[one.index].switched); !wrong.empty())
       return refusal(fmt::format("{}: {}", level ? rig.fixtures[one.index].name : rig.points[one.index].name, wrong));
   }
+  if (times.measuring)
+    if (auto may = may_measure(wanted); !may) return may;
+  measuring = times.measuring;
+  if (measuring) measured_beyond.reset();
   hands.set(rig, wanted);
-  start_with_hands(now, fade_s);
+  start_with_hands(now, times.fade_s);
   return {};
 }
 
 std::size_t ShowController::State::release(Time now, std::span<const std::size_t> fixtures,
-                                           std::span<const std::size_t> points) {
+                                           std::span<const std::size_t> points, std::optional<double> fade_s) {
   const std::size_t released = hands.release(fixtures, points);
-  if (released > 0) start_with_hands(now);
+  if (released > 0) start_with_hands(now, fade_s);
   return released;
 }
 
@@ -123,16 +127,16 @@ std::string ShowController::State::why_not(Time now, const ByHand& held) const {
              : fmt::format("the limit of point {} wins: {:.3f} is the most", limits, program.to_level[held.index]);
 }
 
-Result<void> ShowController::hold(Time now, std::span<const ByHand> wanted, std::optional<double> fade_s) {
+Result<void> ShowController::hold(Time now, std::span<const ByHand> wanted, const ByHandTimes& times) {
   now = state_->at_least_last(now);
-  return state_->hold(now, wanted, fade_s);
+  return state_->hold(now, wanted, times);
 }
 
 std::size_t ShowController::release(Time now, std::span<const std::size_t> fixtures,
-                                    std::span<const std::size_t> points) {
+                                    std::span<const std::size_t> points, std::optional<double> fade_s) {
   now = state_->at_least_last(now);
   const std::size_t aims = state_->sharing.release(state_->program, now, fixtures);
-  return aims + state_->release(now, fixtures, points);
+  return aims + state_->release(now, fixtures, points, fade_s);
 }
 
 std::vector<ByHand> ShowController::by_hand() const { return state_->hands.all(); }

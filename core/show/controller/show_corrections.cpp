@@ -40,7 +40,8 @@ void ShowController::State::take_sample(Time now) {
   }
   if (sample.empty()) return;
   for (const Judgement& judgement : estimator.update(now, sample, program.to_level)) {
-    health.judged(judgement.luxmeter, now, judgement.why);
+    health.judged(judgement.luxmeter, now, judgement.why, judgement.stuck);
+    if (measuring || phase == Phase::safe) see_beyond_model(now, judgement);
     if (judgement.believed)
       readings.believe(readings.sample(judgement.luxmeter));
     else

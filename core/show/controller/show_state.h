@@ -89,8 +89,9 @@ struct ShowController::State {
   std::vector<Point> points_in_force;  ///< the rig's points, with goals, limits and weights in force
   std::optional<double> hands_fade_s;  ///< of the last setting or release; none = the rig's
   bool unsolved = false;               ///< a setting by hand is newer than the levels in force
-  [[nodiscard]] Result<void> hold(Time now, std::span<const ByHand> wanted, std::optional<double> fade_s);
-  std::size_t release(Time now, std::span<const std::size_t> fixtures, std::span<const std::size_t> points);
+  [[nodiscard]] Result<void> hold(Time now, std::span<const ByHand> wanted, const ByHandTimes& times);
+  std::size_t release(Time now, std::span<const std::size_t> fixtures, std::span<const std::size_t> points,
+                      std::optional<double> fade_s = {});
   void release_what_is_over(Time now);
   void take_points(const Look& look);
   void take_levels_of_plan(Time now, const std::vector<double>& levels, const Look& look);
@@ -100,6 +101,20 @@ struct ShowController::State {
   /// The levels, with those held by hand put in.
   [[nodiscard]] std::vector<double> with_hands(std::vector<double> levels) const;
   [[nodiscard]] std::string why_not(Time now, const ByHand& held) const;
+
+  // Light held to be measured (show_measuring.cpp).
+  bool measuring = false;     ///< by a hold that is in force
+  bool safe_is_read = false;  ///< meters have been read under the safe look
+  double beyond_model = 1;    ///< largest reading over the most that the model allows there, while safe or measuring
+  std::optional<Alarm> measured_beyond;  ///< why measuring ended by itself
+  /// Meters that show what the model does not allow send the rig to its safe look, or would if it were not measured.
+  [[nodiscard]] bool only_model_is_off() const;
+  [[nodiscard]] bool all_lamps_held() const;
+  [[nodiscard]] Result<void> may_measure(std::span<const ByHand> wanted) const;
+  void watch_measuring(Time now);
+  void see_beyond_model(Time now, const Judgement& judgement);
+  /// A limit is kept by what meters showed, too.
+  void keep_measured_limits(Time now, std::vector<double>& level) const;
 
   // Bypassed (show_bypass.cpp).
   BypassList bypassed;

@@ -121,6 +121,8 @@ std::string ShowController::State::detail(Time now, const VerdictCounts& goals) 
     case Phase::safe:
       text = phase == Phase::safe ? "safe look" : "fading to the safe look";
       text += asked_safe ? ", as asked" : failing ? ": " + failure : "; everything is back, going on in a moment";
+      if (failing && !asked_safe && only_model_is_off())
+        text += "; if the luxmeters are right and the rig file is not, luxrig calibrate measures the rig from here";
       break;
   }
   if (sharing.shared()) text = sharing.who(rig, program, now) + "; the plan: " + text;
@@ -134,6 +136,7 @@ ShowStatus ShowController::State::status(Time now) const {
   status.round = progress.round;
   status.converged = progress.converged && !program.blackout;
   status.blackout = program.blackout;
+  status.may_be_measured = failing && only_model_is_off() && !asked_safe && phase == Phase::safe && safe_is_read;
   status.plan_waits = awaited.has_value();
 
   const std::vector<double> level = levels_out(now);
@@ -149,6 +152,7 @@ ShowStatus ShowController::State::status(Time now) const {
     status.fixtures[f].parked = parked(f) || (!parking.empty() && parking[f] != 0);
     if (status.fixtures[f].parked) status.fixtures[f].waits_for = "the next plan";
   }
+  if (dipped) status.fixtures[dipped->fixture].dipped = true;
   status.resting = !program.parked.empty() && parking.empty() && now >= arrive;
   for (std::size_t p = 0; p < rig.points.size(); ++p) {
     status.points.push_back(point_status(p, level, now));
@@ -172,6 +176,7 @@ ShowStatus ShowController::State::status(Time now) const {
                      point.name, breach.worst_case_lx, *point.max_lx),
          breach.since});
   }
+  if (measured_beyond) status.alarms.push_back(*measured_beyond);
   status.by_hand = hands.all();
   for (ByHand& held : status.by_hand) held.why = why_not(now, held);
   tell_losses(status);

@@ -198,7 +198,7 @@ TEST(ByHand, FadesAsSlowlyAsAsked) {
     show.show->apply(show.now(), std::vector<double>{0.36, 0.36, 0.0});
     show.run(10);
     const double before = show.levels()[1];
-    ASSERT_TRUE(show.show->hold(show.now(), std::vector{level_by_hand(1, 0.9)}, fade_s));
+    ASSERT_TRUE(show.show->hold(show.now(), std::vector{level_by_hand(1, 0.9)}, {{}, fade_s, false}));
     show.run(fade_s / 2);
     EXPECT_GT(show.levels()[1], before + 0.1) << fade_s;
     EXPECT_LT(show.levels()[1], 0.8) << fade_s;

@@ -54,8 +54,9 @@ struct CalibrateArguments {
 constexpr double kLevelOfUse = 0.4;
 /// In opening hours: no step takes less. Most take longer, by the rig's fade and its slowest meter.
 constexpr double kShortestOpenStep_s = 2;
-/// So slowly that nobody sees 2 %.
-constexpr double kOpenFade_s = 1;
+constexpr double kLikelyOpenStep_s = 4.3;
+/// So slowly that nobody sees 2 %; and what the show has to correct at the end.
+constexpr double kOpenFade_s = 1, kBackToTheShow_s = 20;
 /// A lamp that is off has this level instead of none.
 constexpr double kDimmestLevel = 0.01;
 
@@ -94,40 +95,89 @@ std::function<void(std::size_t)> progress_of(const char* what, std::size_t steps
   };
 }
 
+/// Which lamps take part, told before it begins.
+void tell_of_open_hours(const Rig& rig, const OpenRun& run, double minutes) {
+  for (const OpenRun::LeftOut& left : run.left_out())
+    fmt::print("\"{}\" takes no part: {}.\n", rig.fixtures[left.fixture].name, left.why);
+  fmt::print(
+      "{} lamps are measured for {:.0f} minutes. No step changes the light at any place by more than {:.0f} %. The "
+      "look is held meanwhile: the show corrects nothing and dims no lamp to find faults until the end.\n",
+      run.part().size(), minutes, 100 * OpenRun::kLargestStep);
+  std::fflush(stdout);
+}
+
 /// While visitors are there: the look stays, and each lamp changes by a hair. As many whole rounds of the pattern as there
 /// is time for, at least one.
 Result<void> by_meters_in_open_hours(Measuring& measuring, double minutes) {
+  const Rig& rig = measuring.session.rig;
+  if (auto steady = measuring.daemon.wait_until_steady(measuring.stop); !steady) return steady;
   const auto look = measuring.daemon.levels_now();
   if (!look) return tl::unexpected(look.error());
-  const OpenRun one_round(measuring.session.rig, *look, 1);
-  if (one_round.plan().empty())
-    return tl::unexpected(
-        Fault{Cause::invalid, "", "no dimmable lamp is lit; apply a plan first, or measure with --hours closed", {}});
-  measuring.daemon.fade_in(kOpenFade_s);
-  using Steady = std::chrono::steady_clock;
   const double wanted_s = 60 * minutes;
-  const std::size_t period = one_round.period();
-  OpenRun run(measuring.session.rig, *look,
-              1 + static_cast<int>(wanted_s / (kShortestOpenStep_s * static_cast<double>(period))));
+  const OpenRun one_round(rig, *look, 1);
+  const auto period = static_cast<double>(one_round.period());
+  tell_of_open_hours(rig, one_round, minutes);
+  if (one_round.plan().empty())
+    return tl::unexpected(Fault{Cause::invalid,
+                                "",
+                                "no lamp can be measured so: apply a plan that lights lamps that dim, or measure with "
+                                "--hours closed",
+                                {}});
+  if (period * kLikelyOpenStep_s > wanted_s)
+    return tl::unexpected(
+        Fault{Cause::invalid,
+              "",
+              fmt::format(
+                  "{} lamps take about {:.0f} minutes; give it so many with --minutes, or measure with --hours closed",
+                  one_round.part().size(), std::ceil(period * kLikelyOpenStep_s / 60)),
+              {}});
+  measuring.daemon.fade_in(kOpenFade_s, kBackToTheShow_s);
+  using Steady = std::chrono::steady_clock;
   const auto progress = progress_line("measuring");
   const auto begun = Steady::now();
   const auto elapsed_s = [&] { return std::chrono::duration<double>(Steady::now() - begun).count(); };
-  for (std::size_t done = 0; done < run.plan().size();) {
+  const int rounds = 1 + static_cast<int>(wanted_s / (kShortestOpenStep_s * period));
+  std::vector<OpenRun> runs{OpenRun(rig, *look, rounds)};
+  std::vector<double> before = *look;
+  int limited = 0;
+  double round_s = 0;
+  for (std::size_t done = 0; elapsed_s() + round_s < wanted_s;) {
+    OpenRun& run = runs.back();
+    if (run.plan().empty() || done >= run.plan().size()) break;
     const double round_began_s = elapsed_s();
+    bool small = true;
     const auto read = measuring.daemon.measure(
-        std::span(run.plan()).subspan(done, period), {},
+        std::span(run.plan()).subspan(done, run.period()), {},
         [&](std::size_t) {
           if (progress) progress(std::min(1.0, elapsed_s() / wanted_s));
         },
-        measuring.stop);
+        measuring.stop,
+        [&](const DaemonRig::Read& light) {
+          small = run.is_small_step(before, light.sent);
+          before = light.sent;
+          return small;
+        });
     if (!read) return tl::unexpected(read.error());
-    for (const DaemonRig::Read& step : *read) run.take(step.sent, step.readings);
-    done += period;
-    if (2 * elapsed_s() - round_began_s > wanted_s) break;
+    for (std::size_t k = 0; k + (small ? 0 : 1) < read->size(); ++k) run.take((*read)[k].sent, (*read)[k].readings);
+    round_s = elapsed_s() - round_began_s;
+    done += run.period();
+    if (small) continue;
+    // A limit took light: it goes on from what is left.
+    ++limited;
+    done = 0;
+    runs.emplace_back(rig, before, rounds);
   }
+  if (limited > 0)
+    fmt::print("{} times a limit took light from the look. That is the show's own; it was measured on from there.\n",
+               limited);
+  const OpenRun& longest = *std::max_element(
+      runs.begin(), runs.end(), [](const OpenRun& a, const OpenRun& b) { return a.steps_taken() < b.steps_taken(); });
   measuring.light.read_at(
-      Eigen::Map<const Eigen::VectorXd>(look->data(), static_cast<Eigen::Index>(look->size())).cwiseMax(kDimmestLevel));
-  const std::vector<LightReading> readings = run.readings(measuring.curves);
+      Eigen::Map<const Eigen::VectorXd>(longest.look().data(), static_cast<Eigen::Index>(longest.look().size()))
+          .cwiseMax(kDimmestLevel));
+  std::vector<LightReading> readings;
+  for (const OpenRun& run : runs)
+    for (LightReading& reading : run.readings(*measuring.first_slope)) readings.push_back(std::move(reading));
   if (readings.empty())
     return tl::unexpected(
         Fault{Cause::invalid,
@@ -136,6 +186,7 @@ Result<void> by_meters_in_open_hours(Measuring& measuring, double minutes) {
                           elapsed_s() / 60),
               {}});
   measuring.any = true;
+  measuring.slope_of = longest.part();
   return measuring.light.learn(readings);
 }
 
@@ -233,6 +284,13 @@ std::filesystem::path beside(const std::filesystem::path& file, const std::strin
   return file.parent_path() / (file.stem().string() + ending);
 }
 
+/// Of LightUnknowns' instruments, one that stands for a lamp's slope.
+std::string slope_words(const LightUnknowns& known, std::size_t instrument) {
+  const double slope = known.meter_gain(instrument);
+  return fmt::format("1 % of level changes its light by {:.2f} ± {:.2f} %", slope,
+                     known.meter_gain_standard_error(instrument));
+}
+
 void print_report(const Measuring& measuring, const GoalError& before, const CalibrationReport& told) {
   const Rig& rig = measuring.session.rig;
   const LightUnknowns& known = measuring.light.known();
@@ -242,6 +300,7 @@ void print_report(const Measuring& measuring, const GoalError& before, const Cal
     const Eigen::VectorXd off = known.mount(f), error = known.mount_standard_error(f);
     const MeasuredCurve& curve = measuring.curves[f].of_level;
     const bool measured = known.gain_is_measured(f);
+    const bool sloped = std::find(measuring.slope_of.begin(), measuring.slope_of.end(), f) != measuring.slope_of.end();
     if (measured && known.read_at(f) < 1)
       note = "* as its light says at the level where it was read; at full light it may be another\n";
     lamps.row({rig.fixtures[f].name,
@@ -250,8 +309,9 @@ void print_report(const Measuring& measuring, const GoalError& before, const Cal
                fmt::format("{:.1f}", 100 * off.head<3>().norm()), fmt::format("{:.1f}", 100 * error.head<3>().norm()),
                fmt::format("{:.1f}", deg_from_rad(off.tail<3>().norm())),
                fmt::format("{:.1f}", deg_from_rad(error.tail<3>().norm())),
-               curve.empty() ? "not measured"
-                             : fmt::format("{:.0f} % of its light at half level", 100 * share_at_level(curve, 0.5))});
+               sloped          ? slope_words(known, *measuring.first_slope + f)
+               : curve.empty() ? "not measured"
+                               : fmt::format("{:.0f} % of its light at half level", 100 * share_at_level(curve, 0.5))});
   }
   fmt::print("{}{}\nThe light at {} goals was known to {}. Now it is known to {}.\n", lamps.text(), note, before.goals,
              known_words(before), known_words(measuring.light.error_of_goals(measuring.levels.use)));
@@ -302,6 +362,13 @@ int run_calibrate(const CalibrateArguments& arguments) {
     if (!seen) return report(seen.error());
     views = std::move(*seen);
   }
+  std::optional<std::size_t> first_slope;
+  if (open) {
+    first_slope = static_cast<std::size_t>(priors.log_meter.size());
+    const auto fixtures = static_cast<Eigen::Index>(rig.fixtures.size());
+    priors.log_meter.conservativeResize(priors.log_meter.size() + fixtures);
+    priors.log_meter.tail(fixtures).setConstant(OpenRun::kSlopeError);
+  }
   const Session& with_places = views.session ? *views.session : *session;
   auto light = RigLight::of(with_places, priors, compute);
   if (!light) return report(light.error());
@@ -314,6 +381,7 @@ int run_calibrate(const CalibrateArguments& arguments) {
                       stop,
                       views,
                       false};
+  measuring.first_slope = first_slope;
   const RigLight before = *light;
   const auto look = daemon->levels_now();
   if (!look) return report(look.error());
@@ -397,10 +465,10 @@ Action declare_calibrate(CLI::App& command) {
   command.add_option("--meter-file", calibrate->meter_file,
                      "with --hand: file that the meter's program writes; Enter alone takes its last reading");
   command
-      .add_option(
-          "--hours", calibrate->hours,
-          "open: the look stays and no lamp is sent a change of more than 2 %, for --minutes; closed: one lamp after "
-          "the other, alone (default)")
+      .add_option("--hours", calibrate->hours,
+                  "open: the look stays and no step changes the light anywhere by more than 2 %, for --minutes; "
+                  "closed: one lamp after "
+                  "the other, alone (default)")
       ->check(CLI::IsMember({"open", "closed"}));
   command
       .add_option("--minutes", calibrate->open_minutes,

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <thread>
 #include <utility>
 
@@ -27,6 +26,8 @@ using Clock = std::chrono::steady_clock;
 
 constexpr auto kPoll = 100ms;
 constexpr double kLongestWait_s = 30;
+/// A rig that may be measured from its safe look leaves it within this.
+constexpr double kLeavesSafe_s = 1.5;
 /// Less than was asked for, for so long, is all there will be.
 constexpr double kLimitStands_s = 2;
 /// The light stands still if the levels are the same in two looks.
@@ -107,7 +108,9 @@ DaemonRig::~DaemonRig() {
   if (!lock_) return;
   std::vector<std::string> names;
   for (const Fixture& fixture : rig_->fixtures) names.push_back(fixture.name);
-  if (const auto released = post("/api/release", {{"names", names}}); !released)
+  json back = {{"names", names}};
+  if (release_fade_s_) back["fade_s"] = *release_fade_s_;
+  if (const auto released = post("/api/release", back); !released)
     fmt::print(stderr, "luxrig: {}; the light comes back by itself within {:.0f} s\n", released.error().detail,
                kHeld_s);
   for (const json& held : held_before_) {
@@ -135,15 +138,10 @@ Result<void> DaemonRig::post(const char* route, const json& body) const {
 }
 
 Result<void> DaemonRig::hold(std::span<const double> level) const {
-  // Those that go dark first, so that no limit is in the way of the others. All of one level at once: each request waits for
-  // the daemon's next tick.
-  std::map<double, std::vector<std::string>> at_level;
-  for (std::size_t f = 0; f < level.size(); ++f) at_level[std::max(0.0, level[f])].push_back(rig_->fixtures[f].name);
-  for (const auto& [share, names] : at_level) {
-    const json held = {{"fixtures", names}, {"level", share}, {"for_s", kHeld_s}, {"fade_s", fade_s_}};
-    if (auto done = post("/api/level", held); !done) return done;
-  }
-  return {};
+  // All at the same instant: around some that are held, the show would solve the others anew.
+  json levels = json::object();
+  for (std::size_t f = 0; f < level.size(); ++f) levels[rig_->fixtures[f].name] = std::max(0.0, level[f]);
+  return post("/api/level", {{"levels", levels}, {"for_s", kHeld_s}, {"fade_s", fade_s_}, {"measuring", true}});
 }
 
 Joints DaemonRig::in_its_terms(std::size_t fixture, const Joints& sent, const Approach& from) const {
@@ -199,6 +197,8 @@ Result<std::vector<double>> DaemonRig::light(std::span<const double> level, cons
     std::this_thread::sleep_for(kPoll);
     const auto now = look();
     if (!now) return tl::unexpected(now.error());
+    if (text_of(*now, "phase").starts_with("safe") && now_s() - begun_s > kLeavesSafe_s)
+      return tl::unexpected(fault(Cause::system, "the rig is in its safe look: " + text_of(*now, "detail")));
     if (flag_of(*now, "blackout")) return tl::unexpected(fault(Cause::invalid, "somebody has called a blackout"));
     sent.clear();
     // The daemon solves around what is held, so its targets follow a little later. A limit may leave less than is asked for.
@@ -247,7 +247,8 @@ Result<DaemonRig::Timings> DaemonRig::learn_timing(std::span<const double> toget
 Result<std::vector<DaemonRig::Read>> DaemonRig::measure(std::span<const std::vector<double>> plan,
                                                         std::span<const double> together,
                                                         const std::function<void(std::size_t)>& tell,
-                                                        const std::stop_token& stop) {
+                                                        const std::stop_token& stop,
+                                                        const std::function<bool(const Read&)>& goes_on) {
   if (!together.empty() && !timing_) {
     auto learnt = learn_timing(together, stop);
     if (!learnt) return tl::unexpected(learnt.error());
@@ -256,12 +257,12 @@ Result<std::vector<DaemonRig::Read>> DaemonRig::measure(std::span<const std::vec
   std::vector<Read> read;
   auto readings = read_lights(
       plan.size(),
-      [&](std::size_t light_number) -> Result<void> {
+      [&](std::size_t light_number) -> Result<bool> {
         if (tell) tell(light_number);
         auto sent = light(plan[light_number], stop);
         if (!sent) return tl::unexpected(sent.error());
         read.push_back({std::move(*sent), {}});
-        return {};
+        return !goes_on || goes_on(read.back());
       },
       stop);
   if (!readings) return tl::unexpected(readings.error());
@@ -270,23 +271,42 @@ Result<std::vector<DaemonRig::Read>> DaemonRig::measure(std::span<const std::vec
 }
 
 Result<std::vector<std::vector<std::optional<SteadyReading>>>> DaemonRig::read_lights(
-    std::size_t count, const std::function<Result<void>(std::size_t)>& set, const std::stop_token& stop) {
+    std::size_t count, const std::function<Result<bool>(std::size_t)>& set, const std::stop_token& stop) {
   const Timings timing = timing_.value_or(Timings(samples_.size(), MeterTiming{0, kSlowestMeter_s, kSlowestPeriod_s}));
   const double dwell = std::max(kShortestDwell_s, dwell_s(timing));
   for (auto& samples : samples_) samples.clear();
   ReadingLog log(timing);
   for (std::size_t k = 0; k < count; ++k) {
     arrived_at_s_ = 0;
-    if (auto stands = set(k); !stands) return tl::unexpected(stands.error());
+    const auto goes_on = set(k);
+    if (!goes_on) return tl::unexpected(goes_on.error());
     // light() knows when its levels were first seen to be there.
     const double arrived_s = arrived_at_s_ > 0 ? arrived_at_s_ : now_s();
     if (const auto watched = watch(arrived_s + dwell - now_s(), stop); !watched) return tl::unexpected(watched.error());
     log.light(arrived_s, now_s());
+    if (!*goes_on) break;
   }
   if (const auto watched = watch(log.whole_at_s() - now_s(), stop); !watched) return tl::unexpected(watched.error());
   for (std::size_t m = 0; m < samples_.size(); ++m)
     for (const TimedLux& sample : samples_[m]) log.sample(m, sample);
   return log.readings();
+}
+
+Result<void> DaemonRig::wait_until_steady(const std::stop_token& stop) {
+  for (const double begun_s = now_s();;) {
+    const auto now = look();
+    if (!now) return tl::unexpected(now.error());
+    bool steady = text_of(*now, "phase") == "holding" && !flag_of(*now, "blackout");
+    for (const json& fixture : list_of(*now, "fixtures"))
+      steady = steady && !flag_of(fixture, "dipped") &&
+               std::abs(number_of(fixture, "level").value_or(0) - number_of(fixture, "target_level").value_or(0)) <
+                   kSameLevel;
+    if (steady) return {};
+    if (stop.stop_requested()) return tl::unexpected(stopped());
+    if (now_s() - begun_s > kLongestWait_s)
+      return tl::unexpected(fault(Cause::system, "the show does not hold its light: " + text_of(*now, "detail")));
+    std::this_thread::sleep_for(kPoll);
+  }
 }
 
 Result<std::vector<double>> DaemonRig::levels_now() {

@@ -38,8 +38,11 @@ class DaemonRig {
   [[nodiscard]] Result<void> hold_again() const { return hold(held_); }
   /// If this program dies, the daemon's look comes back after this.
   static constexpr double kHeld_s = 45;
-  /// From one light to the next; else kQuickFade_s.
-  void fade_in(double seconds) { fade_s_ = seconds; }
+  /// From one light to the next, and back at the end; else kQuickFade_s, and as the rig's looks.
+  void fade_in(double step_s, double back_s) {
+    fade_s_ = step_s;
+    release_fade_s_ = back_s;
+  }
   static constexpr std::chrono::seconds kHoldAgain{15};
   /// Nobody is there to be dazzled by a rig that goes on and off, lamp by lamp.
   static constexpr double kQuickFade_s = 0.2;
@@ -62,14 +65,16 @@ class DaemonRig {
   };
   /// Sets one light after the other (levels of all fixtures) and reads all luxmeters. Before the first of them, all lamps go
   /// on to `together`, which shows how late each meter is; if that is empty, each is taken to be as late as any.
-  /// tell: steps so far.
+  /// tell: steps so far. goes_on: asked after each step with what was sent; false ends it, with that step the last.
   [[nodiscard]] Result<std::vector<Read>> measure(std::span<const std::vector<double>> plan,
                                                   std::span<const double> together,
                                                   const std::function<void(std::size_t done)>& tell,
-                                                  const std::stop_token& stop);
-  /// The same for lights that the caller sets: set(k) returns when the k-th stands still. Per light, per luxmeter.
+                                                  const std::stop_token& stop,
+                                                  const std::function<bool(const Read& step)>& goes_on = {});
+  /// The same for lights that the caller sets: set(k) returns when the k-th stands still, false if it is the last. Per
+  /// light, per luxmeter.
   [[nodiscard]] Result<std::vector<std::vector<std::optional<SteadyReading>>>> read_lights(
-      std::size_t count, const std::function<Result<void>(std::size_t light)>& set, const std::stop_token& stop);
+      std::size_t count, const std::function<Result<bool>(std::size_t light)>& set, const std::stop_token& stop);
   /// Readings seen since forget_samples() or the last light that was set to be read; times are those of clock_s().
   [[nodiscard]] const std::vector<TimedLux>& samples(std::size_t luxmeter) const { return samples_[luxmeter]; }
   void forget_samples();
@@ -80,6 +85,8 @@ class DaemonRig {
   }
   /// Keeps looking for so long.
   [[nodiscard]] Result<void> watch(double seconds, const std::stop_token& stop);
+  /// Until the show holds its light and dims no lamp to find a fault; a fault if that takes long.
+  [[nodiscard]] Result<void> wait_until_steady(const std::stop_token& stop);
   /// As sent now, per fixture.
   [[nodiscard]] Result<std::vector<double>> levels_now();
 
@@ -103,6 +110,7 @@ class DaemonRig {
   double held_at_s_ = 0;     ///< when the daemon had taken all of them
   double arrived_at_s_ = 0;  ///< when its light was first seen to be there
   double fade_s_ = kQuickFade_s;
+  std::optional<double> release_fade_s_{};
   std::vector<std::vector<TimedLux>> samples_{};  ///< per luxmeter
   std::optional<Timings> timing_{};
   std::optional<HttpPeer> sim_control_{};

@@ -59,7 +59,7 @@ class MeterHeads {
     std::size_t next = 0;
     const auto found = daemon_.read_lights(
         read.size(),
-        [&](std::size_t light) -> Result<void> {
+        [&](std::size_t light) -> Result<bool> {
           for (; next <= read[light]; ++next) {
             const HeadMeterRun::Step& step = steps[next];
             const auto arrives =
@@ -67,9 +67,11 @@ class MeterHeads {
             if (!arrives) return tl::unexpected(arrives.error());
             // What is only come through need not be waited for as long as light that is read.
             const auto until = step.read ? *arrives : *arrives - HeadTurner::kObeys + kCameThrough;
-            if (auto waited = turner_.wait_until(until); !waited) return waited;
+            if (auto waited = turner_.wait_until(until); !waited) return tl::unexpected(waited.error());
           }
-          return steps[read[light]].lit ? see_level(fixture) : Result<void>{};
+          if (!steps[read[light]].lit) return true;
+          if (auto level = see_level(fixture); !level) return tl::unexpected(level.error());
+          return true;
         },
         stop_);
     if (!found) return tl::unexpected(found.error());

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cstddef>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -26,6 +27,8 @@ struct Measuring {
   bool any = false;            ///< something is measured
   int by_hand = 0;             ///< readings
   MeasuredByCameras seen{};
+  std::optional<std::size_t> first_slope{};  ///< in open hours: instrument of the first fixture's slope
+  std::vector<std::size_t> slope_of{};       ///< fixtures whose slopes were measured
 
   [[nodiscard]] std::vector<std::size_t> no_points() const { return cameras.points(); }
 };

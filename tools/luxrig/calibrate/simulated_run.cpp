@@ -18,6 +18,8 @@ using namespace std::chrono_literals;
 
 /// A look that is not held by then never will be.
 constexpr auto kLongestCorrecting = 120s;
+/// In the safe look, luxmeters have been read after this.
+constexpr auto kSafeIsRead = 10s;
 
 Fault no_run(Cause cause, std::string detail) { return {cause, "", std::move(detail), {}}; }
 
@@ -57,6 +59,7 @@ Result<SimulatedRun> SimulatedRun::start(const std::filesystem::path& rig, const
 
 Result<void> SimulatedRun::wait_held(int port, const std::stop_token& stop) {
   std::optional<std::chrono::steady_clock::time_point> answered;
+  auto safe_since = std::chrono::steady_clock::now();
   while (true) {
     if (stop.stop_requested()) return tl::unexpected(no_run(Cause::cancelled, "stopped"));
     if (const auto code = child_->ended())
@@ -65,8 +68,10 @@ Result<void> SimulatedRun::wait_held(int port, const std::stop_token& stop) {
                                             tail_of(folder_.path() / "log"))));
     const nlohmann::json status = status_on(port);
     const std::string phase = text_of(status, "phase");
-    if (phase == "holding") return {};
-    if (phase == "safe")
+    if (phase == "holding" || (phase == "safe" && flag_of(status, "may_be_measured"))) return {};
+    const auto seen = std::chrono::steady_clock::now();
+    if (phase != "safe") safe_since = seen;
+    if (seen - safe_since > kSafeIsRead)
       return tl::unexpected(
           no_run(Cause::system, "the simulated rig is in its safe look: " + text_of(status, "detail")));
     const auto now = std::chrono::steady_clock::now();

@@ -58,26 +58,50 @@ HttpResponse checked_answer(const Checked<std::string>& done, const char* key) {
 struct Routes {
   HttpHandlers handlers;
 
+  /// A key that is there, but is no number in this range.
+  static bool wrong_number(const nlohmann::json& body, const char* key, double least, double most) {
+    return body.contains(key) && !(body[key].is_number() && body[key] >= least && body[key] <= most);
+  }
+  static bool wrong_times(const nlohmann::json& body) {
+    return wrong_number(body, "for_s", std::numeric_limits<double>::min(), kLongestByHand_s) ||
+           wrong_number(body, "fade_s", kShortestFade_s, kLongestFade_s);
+  }
+  static std::optional<double> seconds_in(const nlohmann::json& body, const char* key) {
+    return body.contains(key) ? std::optional(body[key].get<double>()) : std::nullopt;
+  }
+
+  [[nodiscard]] HttpResponse level(const HttpRequest& request) const {
+    const auto body = json_body(request.body);
+    if (!body.is_object() || !body.contains("levels")) return by_hand(request, "fixtures", "level", handlers.level);
+    std::vector<std::pair<std::string, double>> levels;
+    bool good = (!body.contains("measuring") || body["measuring"].is_boolean()) && body["levels"].is_object() &&
+                !body["levels"].empty() && !wrong_times(body) && !body.contains("fixtures") && !body.contains("level");
+    if (good)
+      for (const auto& [name, value] : body["levels"].items()) {
+        good = good && value.is_number();
+        if (value.is_number()) levels.emplace_back(name, value.get<double>());
+      }
+    if (!good)
+      return http_refusal(400,
+                          "send {\"levels\": {\"a name\": 0.5}} without \"fixtures\" and \"level\"; \"for_s\" and "
+                          "\"fade_s\" as with these");
+    const ByHandTimes times{seconds_in(body, "for_s"), seconds_in(body, "fade_s"), body.value("measuring", false)};
+    return done_answer(handlers.levels(levels, times), "held");
+  }
+
   using ByHandHandler = std::function<Result<std::string>(const std::vector<std::string>&, double, const ByHandTimes&)>;
   static HttpResponse by_hand(const HttpRequest& request, const char* names_key, const char* value_key,
                               const ByHandHandler& handler) {
     const auto body = json_body(request.body);
     const auto names = names_in(body, names_key);
-    const auto wrong = [&](const char* key, double least, double most) {
-      return body.contains(key) && !(body[key].is_number() && body[key] >= least && body[key] <= most);
-    };
-    if (!names || !body.contains(value_key) || !body[value_key].is_number() ||
-        wrong("for_s", std::numeric_limits<double>::min(), kLongestByHand_s) ||
-        wrong("fade_s", kShortestFade_s, kLongestFade_s)) {
+    if (!names || !body.contains(value_key) || !body[value_key].is_number() || wrong_times(body)) {
       return http_refusal(400,
                           fmt::format("send {{\"{}\": [\"a name\"], \"{}\": a number}}, and with \"for_s\" above 0 "
                                       "for how long, with \"fade_s\" from {} to {} how slowly",
                                       names_key, value_key, kShortestFade_s, kLongestFade_s));
     }
-    const auto seconds = [&](const char* key) {
-      return body.contains(key) ? std::optional(body[key].get<double>()) : std::nullopt;
-    };
-    return done_answer(handler(*names, body[value_key].get<double>(), {seconds("for_s"), seconds("fade_s")}), "held");
+    const ByHandTimes times{seconds_in(body, "for_s"), seconds_in(body, "fade_s"), false};
+    return done_answer(handler(*names, body[value_key].get<double>(), times), "held");
   }
 
   [[nodiscard]] HttpResponse blackout(const HttpRequest& request) const {
@@ -142,7 +166,10 @@ struct Routes {
     const auto names = names_in(body, "names");
     if (all == names.has_value())  // "all" must be explicit: a missing list releases nothing
       return http_refusal(400, "send {\"names\": [\"a fixture or point\"]} or {\"all\": true}");
-    return done_answer(handlers.release(names.value_or(std::vector<std::string>{})), "released");
+    if (wrong_number(body, "fade_s", kShortestFade_s, kLongestFade_s))
+      return http_refusal(400, fmt::format("\"fade_s\" goes from {} to {}", kShortestFade_s, kLongestFade_s));
+    return done_answer(handlers.release(names.value_or(std::vector<std::string>{}), seconds_in(body, "fade_s")),
+                       "released");
   }
 
   [[nodiscard]] HttpResponse bypass(const HttpRequest& request) const {
@@ -218,8 +245,7 @@ std::vector<HttpRoute> command_routes(HttpHandlers handlers) {
        }},
       {post, "/api/apply",
        [to](Request request) { return checked_answer(to->handlers.apply(request.body), "applied"); }, kMaxPlanBytes},
-      {post, "/api/level",
-       [to](Request request) { return Routes::by_hand(request, "fixtures", "level", to->handlers.level); }},
+      {post, "/api/level", [to](Request request) { return to->level(request); }},
       {post, "/api/goal",
        [to](Request request) { return Routes::by_hand(request, "points", "goal_lux", to->handlers.goal); }},
       {post, "/api/release", [to](Request request) { return to->release(request); }},

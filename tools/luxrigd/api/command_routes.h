@@ -34,8 +34,12 @@ struct HttpHandlers {
   std::function<Result<std::string>(const std::vector<std::string>& fixtures, double level, const ByHandTimes& times)>
       level;
   std::function<Result<std::string>(const std::vector<std::string>& points, double lux, const ByHandTimes& times)> goal;
+  /// Each fixture its own level, all at the same instant.
+  std::function<Result<std::string>(const std::vector<std::pair<std::string, double>>& levels,
+                                    const ByHandTimes& times)>
+      levels;
   /// Fixtures and points; empty list = all.
-  std::function<Result<std::string>(const std::vector<std::string>& names)> release;
+  std::function<Result<std::string>(const std::vector<std::string>& names, std::optional<double> fade_s)> release;
   /// Takes these fixtures and luxmeters out of the show, or back in. Returns the risks, in lines.
   std::function<Result<std::string>(const std::vector<std::string>& names, bool on)> bypass;
   /// Asks a person in the room, for so long; the answer so far.

@@ -61,6 +61,7 @@ json fixture_json(const Rig& rig, std::size_t index, const FixtureStatus& status
   if (status.identified) out["identified"] = true;
   if (status.aimed_by_hand) out["aimed_by_hand"] = true;
   if (status.parked) out["parked"] = true;
+  if (status.dipped) out["dipped"] = true;
   if (status.kept_dark) out["kept_dark"] = true;
   if (!status.waits_for.empty()) out["waits_for"] = status.waits_for;
   set(out, "gain", status.gain);
@@ -133,6 +134,7 @@ std::string status_json(const StatusInput& input) {
               {"round", show.round},
               {"rounds", rig.control.rounds},
               {"converged", show.converged}};
+  if (show.may_be_measured) out["may_be_measured"] = true;
   if (input.sim_control) out["sim_control"] = {{"host", input.sim_control->host}, {"port", input.sim_control->port}};
   if (!rig.calibrated.empty()) out["calibrated"] = rig.calibrated;
   if (input.question) out["question"] = asked_json(*input.question, input.now);

@@ -82,8 +82,16 @@ class HttpApiTest : public ::testing::Test {
       return std::string("held");
     };
     handlers.goal = handlers.level;
-    handlers.release = [this](const std::vector<std::string>& names) -> Result<std::string> {
+    handlers.levels = [this](const std::vector<std::pair<std::string, double>>& levels,
+                             const ByHandTimes& times) -> Result<std::string> {
+      for (const auto& [name, level] : levels) held += fmt::format("{}:{} ", name, level);
+      held += fmt::format("/{} in {} ", times.for_s.value_or(-1), times.fade_s.value_or(-1));
+      return std::string("held");
+    };
+    handlers.release = [this](const std::vector<std::string>& names,
+                              std::optional<double> fade_s) -> Result<std::string> {
       held += fmt::format("-{} ", fmt::join(names, "+"));
+      if (fade_s) held += fmt::format("in {} ", *fade_s);
       return std::string("1 released");
     };
     handlers.bypass = [this](const std::vector<std::string>& names, bool on) -> Result<std::string> {
@@ -173,11 +181,13 @@ TEST_F(HttpApiTest, SetsByHandAndReleases) {
            std::pair{"/api/goal", R"({"points":["p"],"goal_lux":150})"},
            std::pair{"/api/release", R"({"names":["p"]})"},
            std::pair{"/api/release", R"({"all":true})"},
+           std::pair{"/api/level", R"({"levels":{"a":0.25,"b":1},"for_s":45,"fade_s":1})"},
+           std::pair{"/api/release", R"({"all":true,"fade_s":10})"},
            std::pair{"/api/bypass", R"({"names":["m","s*"],"on":true})"},
            std::pair{"/api/bypass", R"({"names":["m"],"on":false})"},
        })
     EXPECT_NE(ask(port, post(route, body, kJson)).find(" 200 "), std::string::npos) << route << body;
-  EXPECT_EQ(held, "a+b*=0.05/-1 a=1/600 a=1/-1 in 0.2 p=150/-1 -p - bypass m+s* undo m ");
+  EXPECT_EQ(held, "a+b*=0.05/-1 a=1/600 a=1/-1 in 0.2 p=150/-1 -p - a:0.25 b:1 /45 in 1 - in 10 bypass m+s* undo m ");
   held.clear();
   for (const auto& [route, body] : {
            std::pair{"/api/level", R"({"fixtures":[],"level":0.05})"},
@@ -189,6 +199,12 @@ TEST_F(HttpApiTest, SetsByHandAndReleases) {
            std::pair{"/api/level", R"({"fixtures":["a"],"level":0.1,"fade_s":0})"},
            std::pair{"/api/level", R"({"fixtures":["a"],"level":0.1,"fade_s":1e9})"},
            std::pair{"/api/level", R"({"fixtures":["nobody"],"level":0.1})"},
+           std::pair{"/api/level", R"({"levels":{}})"},
+           std::pair{"/api/level", R"({"levels":[0.1]})"},
+           std::pair{"/api/level", R"({"levels":{"a":"full"}})"},
+           std::pair{"/api/level", R"({"levels":{"a":0.1},"fade_s":0})"},
+           std::pair{"/api/level", R"({"levels":{"a":0.1},"level":0.1,"fixtures":["a"]})"},
+           std::pair{"/api/release", R"({"all":true,"fade_s":0})"},
            std::pair{"/api/goal", R"({"fixtures":["a"],"goal_lux":3})"},
            std::pair{"/api/release", "{}"},
            std::pair{"/api/release", R"({"all":false})"},
