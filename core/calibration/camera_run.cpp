@@ -70,6 +70,11 @@ std::string CameraRun::words_of_next() const {
   return taken_.size() < plan_.size() ? words_of(plan_[taken_.size()], *rig_) : "";
 }
 
+std::optional<std::size_t> CameraRun::lamp_of_next() const {
+  if (!found_ || taken_.size() >= plan_.size() || !(plan_[taken_.size()].level > 0)) return std::nullopt;
+  return plan_[taken_.size()].fixture;
+}
+
 bool CameraRun::first_of_lamp(std::size_t step) const {
   return plan_[step].level > 0 &&
          (step == 0 || !(plan_[step - 1].level > 0) || plan_[step - 1].fixture != plan_[step].fixture);
@@ -112,10 +117,21 @@ Result<void> CameraRun::take(std::span<const double> sent, const MergedPicture& 
     dark_ = picture.picture;
     taken_.emplace_back();
   }
-  if (taken_.size() < plan_.size()) return {};
+  find_curves();
+  return {};
+}
+
+void CameraRun::skip(std::span<const double> sent) {
+  const auto lamp = lamp_of_next();
+  LUXRIG_CHECK(lamp && sent.size() == rig_->fixtures.size(), "no lamp alone is to be photographed");
+  taken_.push_back({sent[*lamp], std::vector<std::optional<SeenLight>>(places_.size())});
+  find_curves();
+}
+
+void CameraRun::find_curves() {
+  if (taken_.size() < plan_.size()) return;
   for (std::size_t k = 0; k < plan_.size(); ++k)
     if (first_of_lamp(k) && curves_[plan_[k].fixture].of_level.empty()) curves_[plan_[k].fixture] = curve_from(k);
-  return {};
 }
 
 LampCurve CameraRun::curve_from(std::size_t first) const {
@@ -132,6 +148,7 @@ LampCurve CameraRun::curve_from(std::size_t first) const {
     if (full[p] && full[p]->lux >= kBrightPlace * brightest &&
         std::all_of(steps.begin(), steps.end(), [&](const Taken* step) { return step->light[p].has_value(); }))
       at_all.push_back(p);
+  if (at_all.empty()) return {};
   std::vector<ReadAtLevel> read;
   for (const Taken* step : steps) {
     ReadAtLevel at{step->level, {}};

@@ -44,11 +44,15 @@ class CameraRun {
   /// curves ask for the same.
   [[nodiscard]] std::optional<std::vector<double>> next() const;
   [[nodiscard]] std::string words_of_next() const;
+  /// The lamp that is lit alone then.
+  [[nodiscard]] std::optional<std::size_t> lamp_of_next() const;
   [[nodiscard]] std::size_t steps() const { return 1 + plan_.size(); }
   [[nodiscard]] std::size_t done() const { return taken_.size() + (found_ ? 1 : 0); }
   /// The picture under `next()`, of merged exposures. sent: levels of all fixtures, as they were. Refused, in words, if it
   /// does not tell where the camera is.
   [[nodiscard]] Result<void> take(std::span<const double> sent, const MergedPicture& picture);
+  /// In place of take(), for a lamp alone that gives hardly any light where this camera looks.
+  void skip(std::span<const double> sent);
 
   /// After the first picture.
   [[nodiscard]] const std::optional<FoundCamera>& found() const { return found_; }
@@ -67,6 +71,7 @@ class CameraRun {
     std::vector<std::optional<SeenLight>> light;
   };
   [[nodiscard]] bool first_of_lamp(std::size_t step) const;
+  void find_curves();
   [[nodiscard]] LampCurve curve_from(std::size_t first) const;
   [[nodiscard]] Result<void> look_for_camera(const Picture& picture);
   /// Without what is full.

@@ -104,5 +104,29 @@ TEST(CameraRun, LeavesOutPlacesWhoseBeamsAreFullAndCountsThem) {
   EXPECT_LE(of_second, overflow.places / 2 - overflow.full_places);
 }
 
+TEST(CameraRun, OfALampThatIsSkippedNothingIsKnown) {
+  Seen seen;
+  seen.truth = stated_camera();
+  const auto places = seen_places(seen.rays, stated_camera(), {}, 40);
+  CameraRun run(seen.rig, seen.rays, {stated_camera()}, places, seen.brightest, std::vector<LampCurve>(2));
+  LightPriors priors;
+  priors.log_meter = Eigen::VectorXd::Constant(1, 0.01);
+  const CameraInstrument instrument(seen.rig, room_with_boxes().materials.size(), priors);
+  for (std::uint64_t seed = 3; const auto level = run.next(); ++seed) {
+    const auto lamp = run.lamp_of_next();
+    if (lamp == 1u) {
+      run.skip(*level);
+      continue;
+    }
+    ASSERT_TRUE(run.take(*level, seen.picture(lamp ? static_cast<float>((*level)[0]) : run.done() == 0, seed)));
+  }
+  EXPECT_EQ(run.done(), run.steps());
+  EXPECT_FALSE(run.curves()[0].of_level.empty());
+  EXPECT_TRUE(run.curves()[1].of_level.empty());
+  const auto readings = run.readings(instrument, 0, run.curves());
+  EXPECT_GT(readings.size(), 10u);
+  for (const LightReading& reading : readings) EXPECT_EQ(reading.level[1], 0);
+}
+
 }  // namespace
 }  // namespace luxrig

@@ -20,6 +20,9 @@ namespace {
 /// Places of all cameras that are no points of the rig; more teach little, and their light has to be traced.
 constexpr int kPlacesOfCameras = 80;
 
+/// A lamp is not photographed by a camera that sees less than this share of the light that another sees of it.
+constexpr double kTellsLittle = 0.1;
+
 /// A picture takes seconds. The light is held meanwhile.
 Result<MergedPicture> look_while_held(CameraEye& eye, DaemonRig& daemon, const std::stop_token& stop) {
   auto taken = std::async(std::launch::async, [&] { return eye.look(stop); });
@@ -68,6 +71,25 @@ struct Photographing {
   std::optional<Fault> refused;  ///< why it was not found
 };
 
+/// Per camera, per fixture: whether a picture of this lamp alone would tell something.
+std::vector<std::vector<bool>> seen_lamps(const CameraViews& views, const Eigen::MatrixXd& stated_lux) {
+  using Eigen::Index;
+  Eigen::MatrixXd brightest = Eigen::MatrixXd::Zero(static_cast<Index>(views.each.size()), stated_lux.cols());
+  for (std::size_t k = 0; k < views.each.size(); ++k)
+    brightest.row(static_cast<Index>(k)) =
+        stated_lux
+            .middleRows(static_cast<Index>(views.each[k].first_point), static_cast<Index>(views.each[k].places.size()))
+            .colwise()
+            .maxCoeff();
+  std::vector<std::vector<bool>> sees;
+  for (std::size_t k = 0; k < views.each.size(); ++k) {
+    sees.emplace_back();
+    for (Index f = 0; f < stated_lux.cols(); ++f)
+      sees.back().push_back(brightest(static_cast<Index>(k), f) >= kTellsLittle * brightest.col(f).maxCoeff());
+  }
+  return sees;
+}
+
 std::string words_of(const Photographing& one, const Rig& rig) {
   const std::string& name = rig.cameras[one.view.camera].name;
   if (one.refused) return fmt::format("Camera \"{}\" is left out: {}.", name, one.refused->detail);
@@ -115,9 +137,11 @@ Result<CameraViews> camera_views(const Session& stated, std::span<const std::str
   return views;
 }
 
-Result<MeasuredByCameras> measure_by_cameras(const Session& stated, const CameraViews& views, DaemonRig& daemon,
+Result<MeasuredByCameras> measure_by_cameras(const Session& stated, const CameraViews& views,
+                                             const Eigen::MatrixXd& stated_lux, DaemonRig& daemon,
                                              std::span<const double> brightest, std::vector<LampCurve>& curves,
                                              const std::stop_token& stop) {
+  const std::vector<std::vector<bool>> sees = seen_lamps(views, stated_lux);
   std::vector<Photographing> all;
   for (const CameraView& view : views.each) {
     auto eye = camera_eye(stated.rig, view.camera, daemon.sim_control());
@@ -136,7 +160,12 @@ Result<MeasuredByCameras> measure_by_cameras(const Session& stated, const Camera
     };
     const auto sent = daemon.light(*level, stop);
     if (!sent) return during(sent.error());
+    const auto lamp = first.lamp_of_next();
     for (Photographing* const one : left) {
+      if (lamp && !sees[static_cast<std::size_t>(&one->view - views.each.data())][*lamp]) {
+        one->run.skip(*sent);
+        continue;
+      }
       const auto picture = look_while_held(*one->eye, daemon, stop);
       if (!picture) return during(picture.error());
       if (auto taken = one->run.take(*sent, *picture); !taken) one->refused = taken.error();

@@ -54,10 +54,12 @@ struct MeasuredByCameras {
   std::vector<std::optional<MeasuredByCamera>> each;  ///< in the order of the views; none = the camera was not found
 };
 
-/// Lights the lamps one by one, and photographs each with all cameras; adds curves that are not known yet. A camera that
-/// cannot be found in the room is left out, in words. Refused if that is so of all.
+/// Lights the lamps one by one, and photographs each with the cameras that see light of it; adds curves that are not known
+/// yet. A camera that cannot be found in the room is left out, in words. Refused if that is so of all.
+/// stated_lux: RigLight::stated_lux() of the views' session.
 [[nodiscard]] Result<MeasuredByCameras> measure_by_cameras(const Session& stated, const CameraViews& views,
-                                                           DaemonRig& daemon, std::span<const double> brightest,
+                                                           const Eigen::MatrixXd& stated_lux, DaemonRig& daemon,
+                                                           std::span<const double> brightest,
                                                            std::vector<LampCurve>& curves, const std::stop_token& stop);
 
 /// Puts what was found of the cameras into the calibration, and of all other cameras what `before` says of them.

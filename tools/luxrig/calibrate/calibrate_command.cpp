@@ -211,8 +211,8 @@ Result<void> by_hanging_meters(Measuring& measuring) {
 }
 
 Result<void> by_cameras(Measuring& measuring) {
-  auto seen = measure_by_cameras(measuring.session, measuring.cameras, measuring.daemon, measuring.levels.brightest,
-                                 measuring.curves, measuring.stop);
+  auto seen = measure_by_cameras(measuring.session, measuring.cameras, measuring.light.stated_lux(), measuring.daemon,
+                                 measuring.levels.brightest, measuring.curves, measuring.stop);
   if (!seen) return tl::unexpected(seen.error());
   measuring.any = measuring.any || !seen->readings.empty();
   measuring.seen = std::move(*seen);
