@@ -20,7 +20,7 @@ constexpr int kLongestPicture_s = 300;
 constexpr double kBracketStep = 16;
 constexpr int kSimulatedExposures = 2, kRealExposures = 3;
 /// Of a place, 25 pixels are read.
-constexpr int kSimulatedPasses = 4;
+constexpr int kSimulatedPasses = 8;
 /// Longer, a person in the room would move.
 constexpr double kLongestExposure_s = 0.5;
 
