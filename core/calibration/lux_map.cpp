@@ -15,7 +15,8 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr int kMapWidth_px = 640, kMapPasses = 48;
+/// The light is smooth, and what is not known of it is more than what pixels would add.
+constexpr int kMapWidth_px = 400, kMapPasses = 48;
 constexpr double kMapNoise = 0.04;
 constexpr double kReach_m = 0.15;
 constexpr double kSameFacing = 0.8, kFacesElsewhere = 0.02;

@@ -138,8 +138,8 @@ TEST(LuxMap, IsTheLightOfTheTrueRoomWithinItsErrors) {
   large.height_px = 40;
   const auto small = map_pictures(room, large, map, by_curve.share, luxrig::Run{});
   ASSERT_TRUE(small);
-  EXPECT_EQ(small->lux.width_px, 640);
-  EXPECT_EQ(small->lux.height_px, 16);
+  EXPECT_EQ(small->lux.width_px, 400);
+  EXPECT_EQ(small->lux.height_px, 10);
 }
 
 }  // namespace

@@ -292,7 +292,7 @@ TEST(Aim, RunTakesPicturesBeforeAndAfter) {
     EXPECT_NE(ran.output.find(name), std::string::npos) << ran.output;
   }
   const Ran none = luxrig::testing::run(
-      {program("luxrig"), "run", source("rigs/gallery"), "--sim", "--pictures", (folder / "none").string()});
+      {program("luxrig"), "run", source("rigs/stage"), "--sim", "--pictures", (folder / "none").string()});
   EXPECT_EQ(none.code, 2);
   EXPECT_NE(none.output.find("has no [[camera]]"), std::string::npos) << none.output;
 }

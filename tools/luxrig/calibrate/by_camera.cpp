@@ -21,7 +21,7 @@ namespace {
 constexpr int kPlacesOfCameras = 80;
 
 /// A lamp is not photographed by a camera that sees less than this share of the light that another sees of it.
-constexpr double kTellsLittle = 0.1;
+constexpr double kTellsLittle = 0.03;
 
 /// A picture takes seconds. The light is held meanwhile.
 Result<MergedPicture> look_while_held(CameraEye& eye, DaemonRig& daemon, const std::stop_token& stop) {
@@ -216,26 +216,34 @@ std::string budget_words(const std::optional<CameraBudget>& budget) {
   return words;
 }
 
-Result<LuxMap> lux_map_of(const Session& stated, const CameraView& view, const Camera& camera, const RigLight& light,
-                          std::span<const LampCurve> curves, std::span<const double> level, const Calibration& found,
-                          const ComputeOptions& compute) {
+Result<std::vector<LuxMap>> lux_maps_of(const Session& stated, const CameraViews& views,
+                                        const MeasuredByCameras& measured, const RigLight& light,
+                                        std::span<const LampCurve> curves, std::span<const double> level,
+                                        const Calibration& found, const ComputeOptions& compute) {
   const auto refuse = [](const std::vector<Problem>& problems) { return refusal(problems.front().text()); };
   auto rig = calibrated(stated.rig, found, "what was found");
   if (!rig) return refuse(rig.error());
   const auto session = session_of(std::move(*rig));
   if (!session) return refuse(session.error());
   const LampShares shares = lamp_shares(light.known(), curves, level, usual_priors(stated.rig).dimmer_exponent);
-  LuxMap map;
-  map.camera = stated.rig.cameras[view.camera].name;
-  for (std::size_t f = 0; f < level.size(); ++f)
-    if (const double share = shares.share[static_cast<Eigen::Index>(f)]; share > 0)
-      map.shares.emplace_back(stated.rig.fixtures[f].name, share);
-  map.places = map_places(stated.rig, light, camera, view.places, view.first_point, shares);
-  const auto pictures = map_pictures(*session, camera, map.places, shares.share, compute.of_part());
-  if (!pictures) return tl::unexpected(pictures.error());
-  map.lux_png = false_colour_png(pictures->lux, "light", {});
-  map.error_png = false_colour_png(pictures->error_percent, "standard error, of the light", {"± %", 1.5, {}});
-  return map;
+  std::vector<LuxMap> maps;
+  for (std::size_t k = 0; k < measured.each.size(); ++k) {
+    if (!measured.each[k]) continue;
+    const CameraView& view = views.each[k];
+    const Camera& camera = measured.each[k]->found.camera;
+    LuxMap map;
+    map.camera = stated.rig.cameras[view.camera].name;
+    for (std::size_t f = 0; f < level.size(); ++f)
+      if (const double share = shares.share[static_cast<Eigen::Index>(f)]; share > 0)
+        map.shares.emplace_back(stated.rig.fixtures[f].name, share);
+    map.places = map_places(stated.rig, light, camera, view.places, view.first_point, shares);
+    const auto pictures = map_pictures(*session, camera, map.places, shares.share, compute.of_part());
+    if (!pictures) return tl::unexpected(pictures.error());
+    map.lux_png = false_colour_png(pictures->lux, "light", {});
+    map.error_png = false_colour_png(pictures->error_percent, "standard error, of the light", {"± %", 1.5, {}});
+    maps.push_back(std::move(map));
+  }
+  return maps;
 }
 
 }  // namespace luxrig

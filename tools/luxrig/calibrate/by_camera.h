@@ -69,10 +69,11 @@ void put_cameras(const Rig& rig, const CameraViews& views, const MeasuredByCamer
 /// Why the light at the goals is not better known, for a person: "response to each kind of lamp 40 %, …".
 [[nodiscard]] std::string budget_words(const std::optional<CameraBudget>& budget);
 
-/// The light where a camera sees it, with both pictures. level: of the lamps, as sent. found: the calibration.
-[[nodiscard]] Result<LuxMap> lux_map_of(const Session& stated, const CameraView& view, const Camera& camera,
-                                        const RigLight& light, std::span<const LampCurve> curves,
-                                        std::span<const double> level, const Calibration& found,
-                                        const ComputeOptions& compute);
+/// The light where each camera that was found sees it, with both pictures. level: of the lamps, as sent. found: the
+/// calibration.
+[[nodiscard]] Result<std::vector<LuxMap>> lux_maps_of(const Session& stated, const CameraViews& views,
+                                                      const MeasuredByCameras& measured, const RigLight& light,
+                                                      std::span<const LampCurve> curves, std::span<const double> level,
+                                                      const Calibration& found, const ComputeOptions& compute);
 
 }  // namespace luxrig

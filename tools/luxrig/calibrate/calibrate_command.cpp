@@ -264,19 +264,15 @@ std::vector<LuxMap> maps_of(const Measuring& measuring, std::span<const double> 
   const bool lit = std::any_of(level.begin(), level.end(), [](double one) { return one > 0; });
   if (!lit)
     for (std::size_t f = 0; f < level.size(); ++f) level[f] = level_of_share(measuring.curves[f].of_level, kLevelOfUse);
-  std::vector<LuxMap> maps;
-  for (std::size_t k = 0; k < measuring.seen.each.size(); ++k) {
-    if (!measuring.seen.each[k]) continue;
-    auto map = lux_map_of(measuring.session, measuring.cameras.each[k], measuring.seen.each[k]->found.camera,
-                          measuring.light, measuring.curves, level, found, compute);
-    if (!map) {  // what was measured is still worth its report
-      fmt::print(stderr, "luxrig: there is no map of the light: {}\n", map.error().detail);
-      continue;
-    }
-    map->light = lit ? "the look in force" : fmt::format("every lamp at {:.0f} % of its light", 100 * kLevelOfUse);
-    maps.push_back(std::move(*map));
+  auto maps = lux_maps_of(measuring.session, measuring.cameras, measuring.seen, measuring.light, measuring.curves,
+                          level, found, compute);
+  if (!maps) {  // what was measured is still worth its report
+    fmt::print(stderr, "luxrig: there is no map of the light: {}\n", maps.error().detail);
+    return {};
   }
-  return maps;
+  for (LuxMap& map : *maps)
+    map.light = lit ? "the look in force" : fmt::format("every lamp at {:.0f} % of its light", 100 * kLevelOfUse);
+  return std::move(*maps);
 }
 
 /// calibration.json -> calibration-report.html
