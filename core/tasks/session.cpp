@@ -65,6 +65,24 @@ std::vector<PlannedPoint> predicted_points(const Rig& rig, const TransportMatrix
   return points;
 }
 
+namespace {
+
+/// How sure a calibration is of each fixture.
+void add_spreads(const Rig& rig, LightModel& model) {
+  const bool calibrated = std::any_of(rig.fixtures.begin(), rig.fixtures.end(),
+                                      [](const Fixture& fixture) { return fixture.known_to.has_value(); });
+  if (!calibrated) return;
+  model.gain_sd.setConstant(static_cast<Eigen::Index>(rig.fixtures.size()), std::numeric_limits<double>::quiet_NaN());
+  model.local_sd = model.gain_sd;
+  for (std::size_t f = 0; f < rig.fixtures.size(); ++f)
+    if (const auto& known_to = rig.fixtures[f].known_to) {
+      model.gain_sd[static_cast<Eigen::Index>(f)] = known_to->output;
+      model.local_sd[static_cast<Eigen::Index>(f)] = known_to->local;
+    }
+}
+
+}  // namespace
+
 LightModel light_model(const Rig& rig, const TransportMatrix& transport) {
   const auto points = static_cast<Eigen::Index>(rig.points.size());
   const auto meters = static_cast<Eigen::Index>(rig.luxmeters.size());
@@ -97,24 +115,19 @@ LightModel light_model(const Rig& rig, const TransportMatrix& transport) {
       model.meter_fixed_error_lx = error.bottomRightCorner(meters, 1);
     }
   }
-  const bool calibrated = std::any_of(rig.fixtures.begin(), rig.fixtures.end(),
-                                      [](const Fixture& fixture) { return fixture.known_to.has_value(); });
-  if (calibrated) {
-    model.gain_sd.setConstant(lights, std::numeric_limits<double>::quiet_NaN());
-    model.local_sd = model.gain_sd;
-    for (Eigen::Index f = 0; f < lights; ++f)
-      if (const auto& known_to = rig.fixtures[static_cast<std::size_t>(f)].known_to) {
-        model.gain_sd[f] = known_to->output;
-        model.local_sd[f] = known_to->local;
-      }
-  }
+  add_spreads(rig, model);
   return model;
 }
 
 LightModel light_model(const Session& session, const TransportMatrix& transport) {
   LightModel model = light_model(session.rig, transport);
-  model.any_aim_lux_per_level = any_aim_lux_per_level(session.rig, session.scene);
+  add_untraced(session, model);
   return model;
+}
+
+void add_untraced(const Session& session, LightModel& model) {
+  add_spreads(session.rig, model);
+  model.any_aim_lux_per_level = any_aim_lux_per_level(session.rig, session.scene);
 }
 
 }  // namespace luxrig

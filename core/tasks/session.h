@@ -32,6 +32,9 @@ struct Session {
 [[nodiscard]] LightModel light_model(const Rig& rig, const TransportMatrix& transport);
 /// The same with what heads may give wherever they are aimed.
 [[nodiscard]] LightModel light_model(const Session& session, const TransportMatrix& transport);
+/// Adds to a model what is not traced: how sure a calibration is of each fixture, and what heads may give wherever they
+/// are aimed. Models that are read from a file have none of it.
+void add_untraced(const Session& session, LightModel& model);
 
 /// Light at the rig's points for given levels of the fixtures, daylight included; with colours if the transport has
 /// primaries.

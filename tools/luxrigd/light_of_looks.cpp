@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "core/tasks/any_aim.h"
 #include "core/tasks/rig_transport.h"
 #include "tools/luxrigd/scheduling.h"
 
@@ -25,7 +24,7 @@ std::optional<KeptLight> LightOfLooks::read_saved(const Session& session) {
   const std::uint64_t key = light_key(session.rig, session.scene, compute_);
   auto light = kept_light(*folder_, key, session.rig);
   if (!light) return std::nullopt;
-  light->model.any_aim_lux_per_level = any_aim_lux_per_level(session.rig, session.scene);
+  add_untraced(session, light->model);
   auto known = put({key, *light, std::nullopt});
   const std::lock_guard lock(mutex_);
   saved_ = std::move(known);

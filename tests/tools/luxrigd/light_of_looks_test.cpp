@@ -104,6 +104,20 @@ TEST_F(RoomInLooks, TheLastLookIsSavedEvenIfAlreadyKnown) {
   EXPECT_FALSE(LightOfLooks(other, folder / "state").read_saved(*session_)) << "it was wanted less exact";
 }
 
+TEST_F(RoomInLooks, SavedLightIsAsSureOfEachLampAsTheCalibration) {
+  const Folder folder;
+  session_->rig.fixtures[head()].known_to = LightError{0.02, 0.03};
+  LightOfLooks looks(options_, folder / "state");
+  const LightModel before = model(looks, hung_);
+  const auto f = static_cast<Eigen::Index>(head());
+  ASSERT_EQ(before.gain_sd[f], 0.02);
+  const auto saved = LightOfLooks(options_, folder / "state").read_saved(*session_);
+  ASSERT_TRUE(saved);
+  ASSERT_EQ(saved->model.gain_sd.size(), before.gain_sd.size());
+  EXPECT_EQ(saved->model.gain_sd[f], 0.02);
+  EXPECT_EQ(saved->model.local_sd[f], 0.03);
+}
+
 TEST_F(RoomInLooks, ConcurrentRequestsGetTheLightOfTheirOwnLook) {
   options_.watch.tell = nullptr;
   LightOfLooks looks(options_);

@@ -34,9 +34,9 @@ Result<MergedPicture> look_while_held(CameraEye& eye, DaemonRig& daemon, const s
   return picture;
 }
 
-/// most: places that are no points of the rig.
+/// most: places that are no points of the rig. first_point: of its places.
 Result<CameraView> view_of_named(const Session& stated, const std::string& name, const Calibration* before, int most,
-                                 LightPriors& priors) {
+                                 std::size_t first_point, LightPriors& priors) {
   const std::vector<PictureCamera>& cameras = stated.rig.cameras;
   const auto named = std::find_if(cameras.begin(), cameras.end(), [&](const auto& one) { return one.name == name; });
   if (named == cameras.end()) {
@@ -59,19 +59,20 @@ Result<CameraView> view_of_named(const Session& stated, const std::string& name,
       start.found_before.reset();
   }
   if (places.empty()) return refusal(fmt::format("camera \"{}\" sees no matt surface to measure light on", name));
-  return CameraView{static_cast<std::size_t>(named - cameras.begin()), start, std::move(places), 0,
+  return CameraView{static_cast<std::size_t>(named - cameras.begin()), start, std::move(places), first_point,
                     CameraInstrument(stated.rig, stated.scene.materials.size(), priors)};
 }
 
 /// A camera at work.
 struct Photographing {
   const CameraView& view;
+  std::vector<bool> sees;  ///< per fixture: a picture of this lamp alone would tell something
   std::unique_ptr<CameraEye> eye;
   CameraRun run;
   std::optional<Fault> refused;  ///< why it was not found
 };
 
-/// Per camera, per fixture: whether a picture of this lamp alone would tell something.
+/// Per camera: Photographing::sees.
 std::vector<std::vector<bool>> seen_lamps(const CameraViews& views, const Eigen::MatrixXd& stated_lux) {
   using Eigen::Index;
   Eigen::MatrixXd brightest = Eigen::MatrixXd::Zero(static_cast<Index>(views.each.size()), stated_lux.cols());
@@ -122,12 +123,12 @@ Result<CameraViews> camera_views(const Session& stated, std::span<const std::str
   CameraViews views;
   std::vector<SeenPlace> all;
   for (std::size_t k = 0; k < names.size(); ++k) {
-    if (std::find(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(k), names[k]) - names.begin() <
-        static_cast<std::ptrdiff_t>(k))
-      return refusal(fmt::format("camera \"{}\" is named twice", names[k]));
-    auto view = view_of_named(stated, names[k], before, kPlacesOfCameras / static_cast<int>(names.size()), priors);
+    const auto before_it = names.first(k);
+    if (std::find(before_it.begin(), before_it.end(), names[k]) != before_it.end())
+      return refusal(fmt::format("camera \"{}\" is named twice: name each camera once", names[k]));
+    auto view = view_of_named(stated, names[k], before, kPlacesOfCameras / static_cast<int>(names.size()),
+                              stated.rig.points.size() + all.size(), priors);
     if (!view) return tl::unexpected(view.error());
-    view->first_point = stated.rig.points.size() + all.size();
     all.insert(all.end(), view->places.begin(), view->places.end());
     views.each.push_back(std::move(*view));
   }
@@ -141,12 +142,16 @@ Result<MeasuredByCameras> measure_by_cameras(const Session& stated, const Camera
                                              const Eigen::MatrixXd& stated_lux, DaemonRig& daemon,
                                              std::span<const double> brightest, std::vector<LampCurve>& curves,
                                              const std::stop_token& stop) {
-  const std::vector<std::vector<bool>> sees = seen_lamps(views, stated_lux);
   std::vector<Photographing> all;
-  for (const CameraView& view : views.each) {
+  for (auto& sees : seen_lamps(views, stated_lux)) {
+    const CameraView& view = views.each[all.size()];
     auto eye = camera_eye(stated.rig, view.camera, daemon.sim_control());
     if (!eye) return tl::unexpected(eye.error());
-    all.push_back({view, std::move(*eye), {stated.rig, *stated.rays, view.start, view.places, brightest, curves}, {}});
+    all.push_back({view,
+                   std::move(sees),
+                   std::move(*eye),
+                   {stated.rig, *stated.rays, view.start, view.places, brightest, curves},
+                   {}});
   }
   const Progress progress = progress_line("photographing");
   std::vector<Photographing*> left;
@@ -162,7 +167,7 @@ Result<MeasuredByCameras> measure_by_cameras(const Session& stated, const Camera
     if (!sent) return during(sent.error());
     const auto lamp = first.lamp_of_next();
     for (Photographing* const one : left) {
-      if (lamp && !sees[static_cast<std::size_t>(&one->view - views.each.data())][*lamp]) {
+      if (lamp && !one->sees[*lamp]) {
         one->run.skip(*sent);
         continue;
       }
