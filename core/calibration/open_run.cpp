@@ -70,10 +70,12 @@ void OpenRun::choose_levels(std::size_t f) {
   }
   if (!(upper > lower)) {
     left_out_.push_back(
-        {f, above > 0 ? fmt::format("one step on its wire is {:.2g} of full drive; at {:.2g} that may change its light "
-                                    "by more than {:.0f} %; a fine channel would mend it",
-                                    step, drive, 100 * kLargestStep)
-                      : fmt::format("at a drive of {:.2g} it may be in its dimmer's dead band", drive)});
+        {f, above > 0
+                ? fmt::format("one step on its wire is {:.2g} of full drive; at {:.2g} that may change its light "
+                              "by more than {:.0f} %; a fine channel would mend it",
+                              step, drive, 100 * kLargestStep)
+                : fmt::format("at a drive of {:.2g} it may be in its dimmer's dead band; a brighter look would mend it",
+                              drive)});
     return;
   }
   part_.push_back(f);

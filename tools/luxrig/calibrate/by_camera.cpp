@@ -58,7 +58,10 @@ Result<CameraView> view_of_named(const Session& stated, const std::string& name,
     else
       start.found_before.reset();
   }
-  if (places.empty()) return refusal(fmt::format("camera \"{}\" sees no matt surface to measure light on", name));
+  if (places.empty())
+    return refusal(fmt::format(
+        "camera \"{}\" sees no matt surface to measure light on; aim it at one in the rig file, and in the room",
+        name));
   return CameraView{static_cast<std::size_t>(named - cameras.begin()), start, std::move(places), first_point,
                     CameraInstrument(stated.rig, stated.scene.materials.size(), priors)};
 }
