@@ -13,8 +13,8 @@
 namespace luxrig {
 namespace {
 
-/// Lamps may be this much stronger than stated, and a limit still holds.
-constexpr double kStrongest = 1.35;
+/// Lamps may be this much stronger than stated, and their light this power of the level, and a limit still holds.
+constexpr double kStrongest = 1.35, kFlattest = 0.8;
 /// A share of a curve whose error is larger says nothing of how well the curve is known; above that one, nothing at all.
 constexpr double kMostCurveError = 0.05, kTellsNothing = 0.3;
 /// No share is known better.
@@ -118,10 +118,12 @@ std::vector<double> levels_of(std::span<const LampStep> lit, const Rig& rig) {
   return level;
 }
 
+double most_share(double level) { return kStrongest * std::pow(level, kFlattest); }
+
 bool keeps_limits(const Rig& rig, const Eigen::MatrixXd& stated_lux, const Eigen::VectorXd& level) {
+  const Eigen::VectorXd most = level.unaryExpr(&most_share);
   for (std::size_t p = 0; p < rig.points.size(); ++p)
-    if (rig.points[p].max_lx &&
-        kStrongest * stated_lux.row(static_cast<Eigen::Index>(p)).dot(level) > *rig.points[p].max_lx)
+    if (rig.points[p].max_lx && stated_lux.row(static_cast<Eigen::Index>(p)).dot(most) > *rig.points[p].max_lx)
       return false;
   return true;
 }
@@ -131,14 +133,32 @@ std::vector<double> brightest_levels(const Rig& rig, const Eigen::MatrixXd& stat
                stated_lux.cols());
   std::vector<double> levels;
   for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
-    double most = rig.max_level(rig.fixtures[f]);
+    double level = rig.max_level(rig.fixtures[f]);
     for (std::size_t p = 0; p < rig.points.size(); ++p) {
-      const double lux = kStrongest * stated_lux(static_cast<Eigen::Index>(p), static_cast<Eigen::Index>(f));
-      if (rig.points[p].max_lx && lux * most > *rig.points[p].max_lx) most = *rig.points[p].max_lx / lux;
+      const double lux = stated_lux(static_cast<Eigen::Index>(p), static_cast<Eigen::Index>(f));
+      if (rig.points[p].max_lx && lux * most_share(level) > *rig.points[p].max_lx)
+        level = std::pow(*rig.points[p].max_lx / (kStrongest * lux), 1 / kFlattest);
     }
-    levels.push_back(rig.fixtures[f].switched && most < 1 ? 0 : most);
+    levels.push_back(rig.fixtures[f].switched && level < 1 ? 0 : level);
   }
   return levels;
+}
+
+std::vector<double> levels_together(const Rig& rig, const Eigen::MatrixXd& stated_lux,
+                                    std::span<const double> brightest) {
+  Eigen::VectorXd level(static_cast<Eigen::Index>(brightest.size()));
+  for (std::size_t f = 0; f < brightest.size(); ++f)
+    level[static_cast<Eigen::Index>(f)] =
+        rig.fixtures[f].switched ? 0 : brightest[f] / std::sqrt(static_cast<double>(brightest.size()));
+  const Eigen::VectorXd most = level.unaryExpr(&most_share);
+  double share = 1;
+  for (std::size_t p = 0; p < rig.points.size(); ++p) {
+    const double most_lx = stated_lux.row(static_cast<Eigen::Index>(p)).dot(most);
+    if (rig.points[p].max_lx && most_lx > *rig.points[p].max_lx)
+      share = std::min(share, *rig.points[p].max_lx / most_lx);
+  }
+  level *= std::pow(share, 1 / kFlattest);
+  return {level.begin(), level.end()};
 }
 
 LampCurve curve_of(std::span<const ReadAtLevel> brightest_first) {

@@ -23,12 +23,20 @@ struct LampStep {
 /// The same for several lamps at once; none = every lamp is dark.
 [[nodiscard]] std::vector<double> levels_of(std::span<const LampStep> lit, const Rig& rig);
 
-/// Per fixture, the brightest level at which it may be measured alone: lamps may be a third stronger than stated, and no
-/// limit is exceeded. stated_lux: RigLight::stated_lux().
+/// The most that a lamp may give of its stated light at this level, as a share of that at full level: it may be a third
+/// stronger than stated, and its dimmer the flattest of the field, whose light is level^0.8.
+[[nodiscard]] double most_share(double level);
+
+/// Per fixture, the brightest level at which it may be measured alone: no limit is exceeded, even if it gives
+/// most_share(). stated_lux: RigLight::stated_lux().
 [[nodiscard]] std::vector<double> brightest_levels(const Rig& rig, const Eigen::MatrixXd& stated_lux);
 
-/// Whether these levels keep every limit, if lamps are a third stronger than stated.
+/// Whether these levels keep every limit, even if each lamp gives most_share().
 [[nodiscard]] bool keeps_limits(const Rig& rig, const Eigen::MatrixXd& stated_lux, const Eigen::VectorXd& level);
+
+/// All lamps that dim, at once, as bright as their sum may be. brightest: of each alone.
+[[nodiscard]] std::vector<double> levels_together(const Rig& rig, const Eigen::MatrixXd& stated_lux,
+                                                  std::span<const double> brightest);
 
 /// Shares of the brightest level at which a curve is read, brightest first. Few: a dimmer is nearly a power of the level
 /// above a dead band, which curve_of() finds; what of a reading departs from that by more than its noise stays.
