@@ -1,5 +1,6 @@
 #include "core/calibration/light_unknowns.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -172,22 +173,19 @@ void LightUnknowns::relinearise(LightSensitivity sensitivity) {
   estimate();
 }
 
-void LightUnknowns::rest_of_readings() {
-  const auto count = static_cast<Index>(asked_.size());
-  rest_.resize(count, count);
-  for (Index a = 0; a < count; ++a)
-    for (Index b = 0; b <= a; ++b)
-      rest_(a, b) = rest_(b, a) =
-          rest_covariance(asked_[static_cast<std::size_t>(a)], asked_[static_cast<std::size_t>(b)]);
-}
-
 void LightUnknowns::estimate() {
   const auto count = static_cast<Index>(readings_.size());
   surprise_.assign(readings_.size(), 0);
   slopes_.resize(count, unknowns());
+  posterior_ = prior_variance_.asDiagonal();
+  const VectorXd prior_sd = prior_variance_.cwiseSqrt();
+  std::vector<std::size_t> places;
+  for (const LightQuery& asked : asked_) places.push_back(place_of(asked.receiver));
+  const auto rest = [this](Index a, Index b) {
+    return rest_covariance(asked_[static_cast<std::size_t>(a)], asked_[static_cast<std::size_t>(b)]);
+  };
   VectorXd slope, off(count), variance(count);
   for (int round = 0; round < kRounds && count > 0; ++round) {
-    rest_of_readings();
     for (Index k = 0; k < count; ++k) {
       const LightReading& reading = readings_[static_cast<std::size_t>(k)];
       off[k] = reading.lux - light_and_slope(asked_[static_cast<std::size_t>(k)], reading.fixed_lx, slope);
@@ -196,56 +194,52 @@ void LightUnknowns::estimate() {
           reading.standard_error_lx * reading.standard_error_lx / weight_of(surprise_[static_cast<std::size_t>(k)]);
     }
     off += slopes_ * value_;
-    MatrixXd innovation = slopes_ * prior_variance_.asDiagonal() * slopes_.transpose() + rest_;
-    innovation.diagonal() += variance;
-    noise_variance_ = variance;
-    innovation_.compute(innovation);
-    explained_ = innovation_.solve(off);
-    const VectorXd step = prior_variance_.cwiseProduct(slopes_.transpose() * explained_) - value_;
+    noise_ = ReadingNoise(places, rest, variance);
+    // In units of the prior: well scaled, and an unknown that is known beforehand has a row of 0.
+    const MatrixXd scaled = slopes_ * prior_sd.asDiagonal(), weighed = noise_.solve(scaled);
+    MatrixXd information = MatrixXd::Identity(unknowns(), unknowns());
+    information.noalias() += scaled.transpose() * weighed;
+    const MatrixXd inverse = information.llt().solve(MatrixXd::Identity(unknowns(), unknowns()));
+    posterior_ = prior_sd.asDiagonal() * inverse * prior_sd.asDiagonal();
+    const VectorXd found = prior_sd.cwiseProduct(inverse * (weighed.transpose() * off));
+    left_ = noise_.solve(off - slopes_ * found);
+    const VectorXd step = found - value_;
     // What of each reading is left to its noise.
     for (Index k = 0; k < count; ++k)
       surprise_[static_cast<std::size_t>(k)] =
-          variance[k] * explained_[k] / readings_[static_cast<std::size_t>(k)].standard_error_lx;
+          variance[k] * left_[k] / readings_[static_cast<std::size_t>(k)].standard_error_lx;
     // Gains are logarithms: a step of 1 is a factor of e, and the linear model says nothing there.
     value_ += step * std::min(1.0, 1 / std::max(1e-300, step.cwiseAbs().maxCoeff()));
     if (step.cwiseAbs().maxCoeff() < kArrived) break;
   }
-  mount_covariance_.clear();
-  for (Index j = 0; j < fixtures(); ++j) {
-    const Index first = mount_at(j);
-    MatrixXd covariance = prior_variance_.segment(first, kMountUnknowns).asDiagonal();
-    if (count > 0) {
-      const MatrixXd shared =
-          slopes_.middleCols(first, kMountUnknowns) * prior_variance_.segment(first, kMountUnknowns).asDiagonal();
-      covariance -= shared.transpose() * innovation_.solve(shared);
-    }
-    mount_covariance_.push_back(std::move(covariance));
-  }
 }
 
-MatrixXd LightUnknowns::shared_with_readings(std::span<const LightQuery> queries, const MatrixXd& slopes) const {
-  MatrixXd shared = slopes * prior_variance_.asDiagonal() * slopes_.transpose();
-  for (Index q = 0; q < shared.rows(); ++q)
-    for (Index k = 0; k < shared.cols(); ++k)
-      shared(q, k) += rest_covariance(queries[static_cast<std::size_t>(q)], asked_[static_cast<std::size_t>(k)]);
-  return shared;
+VectorXd LightUnknowns::rest_with_readings(const LightQuery& query) const {
+  VectorXd rest = VectorXd::Zero(static_cast<Index>(readings_.size()));
+  for (const Index k : noise_.at(place_of(query.receiver)))
+    rest[k] = rest_covariance(query, asked_[static_cast<std::size_t>(k)]);
+  return rest;
 }
 
 MatrixXd LightUnknowns::covariance(std::span<const LightQuery> queries) const {
   const auto count = static_cast<Index>(queries.size());
-  MatrixXd slopes(count, unknowns());
+  MatrixXd slopes(count, unknowns()), rest(static_cast<Index>(readings_.size()), count), covariance(count, count);
   VectorXd slope;
   for (Index q = 0; q < count; ++q) {
-    (void)light_and_slope(queries[static_cast<std::size_t>(q)], 0, slope);
+    const LightQuery& query = queries[static_cast<std::size_t>(q)];
+    (void)light_and_slope(query, 0, slope);
     slopes.row(q) = slope;
+    rest.col(q) = rest_with_readings(query);
+    for (Index other = 0; other <= q; ++other)
+      covariance(q, other) = covariance(other, q) = rest_covariance(query, queries[static_cast<std::size_t>(other)]);
   }
-  MatrixXd covariance = slopes * prior_variance_.asDiagonal() * slopes.transpose();
-  for (Index a = 0; a < count; ++a)
-    for (Index b = 0; b < count; ++b)
-      covariance(a, b) += rest_covariance(queries[static_cast<std::size_t>(a)], queries[static_cast<std::size_t>(b)]);
-  if (readings_.empty()) return covariance;
-  const MatrixXd shared = shared_with_readings(queries, slopes);
-  return covariance - shared * innovation_.solve(shared.transpose());
+  if (!readings_.empty()) {
+    // What readings at its place say of a query's rest, if the unknowns are as found; then, what these still may be.
+    const MatrixXd told = noise_.solve(rest);
+    covariance -= rest.transpose() * told;
+    slopes -= told.transpose() * slopes_;
+  }
+  return covariance + slopes * posterior_ * slopes.transpose();
 }
 
 LightEstimate LightUnknowns::at(std::size_t receiver, const VectorXd& level) const {
@@ -253,9 +247,7 @@ LightEstimate LightUnknowns::at(std::size_t receiver, const VectorXd& level) con
   VectorXd slope;
   LightEstimate estimate;
   estimate.lux = light_and_slope(query, 0, slope);
-  if (!readings_.empty())
-    for (std::size_t k = 0; k < readings_.size(); ++k)
-      estimate.lux += rest_covariance(query, asked_[k]) * explained_[static_cast<Index>(k)];
+  if (!readings_.empty()) estimate.lux += rest_with_readings(query).dot(left_);
   const auto [bent_lx, bent_variance] = of_bend(static_cast<Index>(receiver), level);
   estimate.lux += bent_lx;
   estimate.standard_error_lx = std::sqrt(std::max(0.0, covariance({&query, 1})(0, 0) + bent_variance));
@@ -269,13 +261,12 @@ LightBudget LightUnknowns::budget(std::size_t receiver, const VectorXd& level) c
   LightBudget budget;
   budget.rest = rest_covariance(query, query);
   if (!readings_.empty()) {
-    const VectorXd shared = shared_with_readings({&query, 1}, left.transpose()).transpose();
-    const VectorXd weight = innovation_.solve(shared);
+    const VectorXd rest = rest_with_readings(query), told = noise_.solve(rest);
+    // The estimate is this sum of the readings.
+    const VectorXd weight = told + noise_.solve(slopes_ * (posterior_ * (left - slopes_.transpose() * told)));
     left -= slopes_.transpose() * weight;
-    budget.noise = weight.cwiseAbs2().dot(noise_variance_);
-    for (Index k = 0; k < weight.size(); ++k)
-      budget.rest -= 2 * weight[k] * rest_covariance(query, asked_[static_cast<std::size_t>(k)]);
-    budget.rest += weight.dot(rest_ * weight);
+    budget.noise = noise_.noise_variance(weight);
+    budget.rest += noise_.rest_variance(weight) - 2 * weight.dot(rest);
   }
   const VectorXd variance = left.cwiseAbs2().cwiseProduct(prior_variance_);
   budget.output = variance.head(fixtures()).sum();
@@ -294,7 +285,9 @@ std::pair<double, double> LightUnknowns::of_bend(Index receiver, const VectorXd&
     using Square = Eigen::Matrix<double, kMountUnknowns, kMountUnknowns, Eigen::RowMajor>;
     const Eigen::Matrix<double, 1, kMountUnknowns* kMountUnknowns> row =
         light_.bend[static_cast<std::size_t>(j)].row(receiver);
-    const Square spread = Eigen::Map<const Square>(row.data()) * mount_covariance_[static_cast<std::size_t>(j)];
+    const Index first = mount_at(j);
+    const Square spread =
+        Eigen::Map<const Square>(row.data()) * posterior_.block<kMountUnknowns, kMountUnknowns>(first, first);
     const double full = level[j] * std::exp(value_[j]);
     lux += 0.5 * full * spread.trace();
     variance += 0.5 * full * full * (spread * spread).trace();
@@ -302,14 +295,7 @@ std::pair<double, double> LightUnknowns::of_bend(Index receiver, const VectorXd&
   return {lux, std::max(0.0, variance)};
 }
 
-double LightUnknowns::variance_of(Index unknown) const {
-  double variance = prior_variance_[unknown];
-  if (!readings_.empty()) {
-    const VectorXd shared = slopes_.col(unknown) * prior_variance_[unknown];
-    variance -= shared.dot(innovation_.solve(shared));
-  }
-  return std::max(0.0, variance);
-}
+double LightUnknowns::variance_of(Index unknown) const { return std::max(0.0, posterior_(unknown, unknown)); }
 
 double LightUnknowns::gain(std::size_t fixture) const { return std::exp(value_[static_cast<Index>(fixture)]); }
 
@@ -331,7 +317,7 @@ VectorXd LightUnknowns::mount(std::size_t fixture) const {
 }
 
 VectorXd LightUnknowns::mount_standard_error(std::size_t fixture) const {
-  return mount_covariance_[fixture].diagonal().cwiseMax(0).cwiseSqrt();
+  return posterior_.diagonal().segment(mount_at(static_cast<Index>(fixture)), kMountUnknowns).cwiseMax(0).cwiseSqrt();
 }
 
 double LightUnknowns::paint(std::size_t material) const { return 1 + value_[paint_at(static_cast<Index>(material))]; }

@@ -10,18 +10,20 @@
 /// light by its response to that kind of lamp, and all by what its lens loses there and by the true reflectance of the
 /// paint that it sees, and adds stray light.
 ///
-/// The estimate is the maximum a posteriori, by Gauss-Newton in the space of the readings: there are far fewer of them
-/// than unknowns, and the rest costs nothing there. Readings that no values explain weigh less (Student's t).
+/// The estimate is the maximum a posteriori, by Gauss-Newton in the space of the unknowns, the rest taken out of it: that
+/// is like noise which readings at one place share. Readings that no values explain weigh less (Student's t).
 ///
-/// Source: A. Tarantola, Inverse Problem Theory (2005), ch. 3.
+/// Source: A. Tarantola, Inverse Problem Theory (2005), ch. 3; C. E. Rasmussen, C. K. I. Williams, Gaussian Processes for
+/// Machine Learning (2006), 2.7, for a linear model with a rest.
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <cstddef>
 #include <optional>
 #include <span>
 #include <utility>
 #include <vector>
+
+#include "core/calibration/reading_noise.h"
 
 namespace luxrig {
 
@@ -168,10 +170,8 @@ class LightUnknowns {
   [[nodiscard]] double lamp_share(const Showing& showing, Eigen::Index fixture) const;
   /// Covariance of two queries' rests, before anything is measured.
   [[nodiscard]] double rest_covariance(const LightQuery& a, const LightQuery& b) const;
-  /// Of queries with the readings: queries × readings.
-  [[nodiscard]] Eigen::MatrixXd shared_with_readings(std::span<const LightQuery> queries,
-                                                     const Eigen::MatrixXd& slopes) const;
-  void rest_of_readings();
+  /// Of a query's rest with those of the readings.
+  [[nodiscard]] Eigen::VectorXd rest_with_readings(const LightQuery& query) const;
   void estimate();
   [[nodiscard]] double variance_of(Eigen::Index unknown) const;
   /// Mean and variance that the bend of the light adds at a receiver.
@@ -185,11 +185,9 @@ class LightUnknowns {
   std::vector<LightReading> readings_;
   std::vector<LightQuery> asked_;            ///< of the readings
   Eigen::MatrixXd slopes_;                   ///< readings × unknowns
-  Eigen::VectorXd noise_variance_;           ///< of the readings, as they were weighed
-  Eigen::MatrixXd rest_;                     ///< readings × readings: rest_covariance()
-  Eigen::LDLT<Eigen::MatrixXd> innovation_;  ///< covariance of the readings
-  Eigen::VectorXd explained_;                ///< innovation⁻¹ · what the readings are off
-  std::vector<Eigen::MatrixXd> mount_covariance_;
+  ReadingNoise noise_;                       ///< of the readings, as they were weighed
+  Eigen::MatrixXd posterior_;                ///< covariance of the unknowns
+  Eigen::VectorXd left_;                     ///< of the readings: noise⁻¹ · what the unknowns leave of them
   std::vector<double> surprise_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <cmath>
 #include <cstdio>
@@ -221,6 +222,48 @@ TEST(LightUnknowns, AReadingAtAPlaceTellsMostOfThatPlace) {
   other.learn(readings);
   const VectorXd level = VectorXd::Constant(Room::kSpots, 0.6);
   EXPECT_LT(together.at(4, level).standard_error_lx, 0.8 * other.at(4, level).standard_error_lx);
+}
+
+/// All that is asked and read as one Gaussian, conditioned on the readings: the textbook's way, in their own space.
+TEST(LightUnknowns, WhatIsLeftIsTheGaussianConditionedOnTheReadings) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Room room(seed);
+    room.priors.stray = VectorXd::Constant(2, 0.02);
+    LightSensitivity light = Room::sensitivity(VectorXd::Zero(Room::kSpots * kMountUnknowns));
+    light.bend.clear();
+    for (Index r = 0; r < light.lux.rows(); ++r)
+      light.place.push_back(
+          static_cast<std::size_t>(r < Room::kPoints ? r : 3 * (r - Room::kPoints) + 1));  // meters hang at points
+    const LightUnknowns before(light, room.priors);
+    LightUnknowns after(light, room.priors);
+    std::vector<LightQuery> all;
+    for (std::size_t p = 0; p < Room::kPoints; ++p) all.push_back({p, room.normal(Room::kSpots, 1).cwiseAbs(), {}, {}});
+    const auto asked = static_cast<Index>(all.size());
+    // Read just what is expected, so that nothing is found to be off and the light's slopes stay.
+    std::vector<LightReading> readings = room.one_at_a_time();
+    for (LightReading& reading : readings) {
+      LightQuery query{reading.receiver, reading.level, reading.meter, {}};
+      if (room.random() % 2 == 0) query.showing.stray = {{room.random() % 2, 30}};
+      reading.lux = before.at(reading.receiver, reading.level).lux;
+      reading.showing = query.showing;
+      all.push_back(std::move(query));
+    }
+    MatrixXd joint = before.covariance(all);
+    const auto read = static_cast<Index>(readings.size());
+    for (Index k = 0; k < read; ++k)
+      joint(asked + k, asked + k) += std::pow(readings[static_cast<std::size_t>(k)].standard_error_lx, 2);
+    const MatrixXd cross = joint.topRightCorner(asked, read);
+    const MatrixXd left =
+        joint.topLeftCorner(asked, asked) - cross * joint.bottomRightCorner(read, read).ldlt().solve(cross.transpose());
+    after.learn(readings);
+    const MatrixXd found = after.covariance({all.data(), static_cast<std::size_t>(asked)});
+    EXPECT_LT((found - left).cwiseAbs().maxCoeff(), 1e-7 * joint.topLeftCorner(asked, asked).maxCoeff());
+    for (Index q = 0; q < asked; ++q) {
+      const LightQuery& query = all[static_cast<std::size_t>(q)];
+      EXPECT_NEAR(std::pow(after.at(query.receiver, query.level).standard_error_lx, 2), left(q, q), 1e-6 * joint(q, q));
+      EXPECT_NEAR(after.budget(query.receiver, query.level).sum(), left(q, q), 1e-6 * joint(q, q));
+    }
+  }
 }
 
 TEST(LightUnknowns, TheExpectedErrorOfAReadingIsTheOneItThenHas) {
