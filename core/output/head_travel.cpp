@@ -29,4 +29,10 @@ double travel_s(const Fixture& fixture, const std::optional<Joints>& from, const
   return std::max(longest_s, beam_rad / fixture.zoom_speed_rad_s);
 }
 
+double stands_still_s(const Fixture& fixture, const std::optional<Joints>& from, const Joints& to) {
+  constexpr double kSlower = 1 / (1 - 1.0 / 6), kSwings_s = 0.4;
+  const double stated_s = travel_s(fixture, from, to);
+  return fixture.axes ? stated_s : kSlower * stated_s + kSwings_s;
+}
+
 }  // namespace luxrig

@@ -1,18 +1,23 @@
 #pragma once
-/// The joints of a pan-tilt head: each turns at its own constant speed to its target, within its range.
-/// Acceleration is not modelled: a head that ramps arrives later by about (speed / acceleration).
+/// The joints of a pan-tilt head: the motor of each turns at its own constant speed to its target, within its range. The
+/// head follows by belts that give, as first-order lag: it is late on the way, and settles at the end.
 
 #include "core/rig/equipment.h"
 
 namespace luxrig::sim {
 
+struct HeadTruth {
+  double pan_scale = 1;     ///< true pan over the motor's; negative: it turns the other way
+  double backlash_rad = 0;  ///< play of pan and tilt: the head follows within half of it
+  double speed_share = 1;   ///< of the stated speeds of pan and tilt
+  double lag_s = 0;         ///< time constant with which the head follows its motors
+};
+
 class Head {
  public:
   /// `fixture` must move (speeds > 0). It starts at pan = tilt = 0, or as near as its range allows, its zoom at the
   /// narrow end, like heads at power-on. A fixture that does not move stays at its joints for ever.
-  /// pan_scale      true pan over the motor's; negative: it turns the other way
-  /// backlash_rad   play of pan and tilt: the head follows its motors within half of it
-  explicit Head(const Fixture& fixture, double pan_scale = 1, double backlash_rad = 0);
+  explicit Head(const Fixture& fixture, const HeadTruth& truth = {});
 
   /// Clamped to the range, as by end stops; NaN is ignored.
   void set_target(const Joints& joints);
@@ -21,7 +26,7 @@ class Head {
   void step(double dt_s);
 
   [[nodiscard]] const Joints& joints() const { return lamp_; }  ///< where it truly looks
-  [[nodiscard]] bool moving() const { return !(joints_ == target_); }
+  [[nodiscard]] bool moving() const { return !(joints_ == target_ && belted_ == joints_); }
 
  private:
   void drag();
@@ -30,9 +35,10 @@ class Head {
   bool carried_ = false;
   JointRange range_;
   double pan_speed_rad_s_, tilt_speed_rad_s_, zoom_speed_rad_s_;
-  double pan_scale_, half_play_rad_;
+  HeadTruth truth_;
   Joints joints_, target_;  ///< of the motors
-  Joints lamp_;             ///< behind them
+  Joints belted_;           ///< behind their belts
+  Joints lamp_;             ///< and behind the play of the gears
 };
 
 }  // namespace luxrig::sim

@@ -31,10 +31,10 @@ void hang_wrongly(const Deviations& deviations, std::size_t mount, FixtureTruth&
           truth.world_from_mount.rotation * Eigen::AngleAxisd(kPi, Vec3::UnitX()).toRotationMatrix();
       return;
     case 1:
-      truth.pan_scale = -1;
+      truth.head.pan_scale = -1;
       return;
     default:  // set to 540° on the head, to 630° in the file
-      truth.pan_scale = 540.0 / 630.0;
+      truth.head.pan_scale = 540.0 / 630.0;
       return;
   }
 }
@@ -62,6 +62,8 @@ Deviations Deviations::real() {
   real.position_error_m = 0.05;                // up to 15 cm
   real.angle_error_rad = rad_from_deg(5) / 3;  // up to 5°
   real.backlash_rad = rad_from_deg(2);
+  real.head_speed_share = 0.15;
+  real.head_lag_s = 0.06;
   real.reflectance_spread = 0.15;
   real.object_error_m = 0.05;
   real.cloud_share = 0.3;
@@ -111,7 +113,10 @@ std::vector<FixtureTruth> draw_fixtures(const Rig& rig, const Deviations& deviat
     truth.tail = deviations.tail * random_unit(seed, Draw::tail, f, 0);
     truth.warm_up_share = deviations.warm_up_share * random_unit(seed, Draw::warm_up, f, 0);
     truth.ageing_per_hour = deviations.ageing_per_hour * random_unit(seed, Draw::ageing, f, 0);
-    truth.backlash_rad = deviations.backlash_rad * random_unit(seed, Draw::backlash, mount, 0);
+    truth.head.backlash_rad = deviations.backlash_rad * random_unit(seed, Draw::backlash, mount, 0);
+    truth.head.speed_share =
+        1 + deviations.head_speed_share * (0.5 - 1.5 * random_unit(seed, Draw::head_speed, mount, 0));
+    truth.head.lag_s = deviations.head_lag_s * random_unit(seed, Draw::head_lag, mount, 0);
     Vec3 offset_m, turn_rad;
     for (int axis = 0; axis < 3; ++axis) {
       const auto counter = static_cast<std::uint64_t>(axis);
@@ -153,7 +158,7 @@ Pose true_lamp(const FixtureTruth& truth, const Joints& joints, double roll_rad)
 
 Joints true_joints(const FixtureTruth& truth, const Joints& commanded) {
   Joints joints = commanded;
-  joints.pan_rad *= truth.pan_scale;
+  joints.pan_rad *= truth.head.pan_scale;
   return joints;
 }
 

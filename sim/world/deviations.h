@@ -7,6 +7,7 @@
 #include "core/rig/rig.h"
 #include "core/scene/ray_scene.h"
 #include "core/scene/scene.h"
+#include "sim/devices/head.h"
 
 namespace luxrig::sim {
 
@@ -35,6 +36,8 @@ struct Deviations {
   double position_error_m = 0.01;  ///< standard deviation per axis
   double angle_error_rad = 0.003;  ///< standard deviation per axis
   double backlash_rad = 0;         ///< up to this play in pan and tilt
+  double head_speed_share = 0;     ///< up to this share slower than stated, or half of it faster
+  double head_lag_s = 0;           ///< up to: time constant with which a head follows its motors
   double wrong_heads = 0;          ///< share of heads that hang or turn the wrong way, or by 540° for 630°
   double wrong_lines = 0;          ///< share of fixtures that are patched as their neighbour
 
@@ -83,8 +86,7 @@ struct FixtureTruth {
   double warm_up_share = 0, ageing_per_hour = 0;
   Pose world_from_mount;
   Mat3 photometry_from_lamp = Mat3::Identity();  ///< turn of its light about the lamp
-  double backlash_rad = 0;
-  double pan_scale = 1;  ///< true over commanded; negative: it turns the other way
+  HeadTruth head{};
   std::size_t line = 0;  ///< the fixture whose drive and aim reach it
 };
 

@@ -31,6 +31,8 @@ constexpr Field kFields[] = {
     {"position_error_m", &Deviations::position_error_m, 1},
     {"angle_error_rad", &Deviations::angle_error_rad, 1},
     {"backlash_rad", &Deviations::backlash_rad, 1},
+    {"head_speed_share", &Deviations::head_speed_share, 0.9},
+    {"head_lag_s", &Deviations::head_lag_s, 10},
     {"wrong_heads", &Deviations::wrong_heads, 1},
     {"wrong_lines", &Deviations::wrong_lines, 1},
     {"reflectance_spread", &Deviations::reflectance_spread, 0.9},

@@ -42,7 +42,9 @@ enum class Draw : std::uint64_t {
   meter_drift,
   camera_place,
   camera_lens,
-  camera_response
+  camera_response,
+  head_speed,
+  head_lag
 };
 
 [[nodiscard]] inline std::uint64_t mix64(std::uint64_t x) {

@@ -46,7 +46,7 @@ class MatrixWorld final : public World {
       dimmers_.emplace_back(DimmerTruth{rig.fixtures[f].dimmer_curve, truth.curve_exponent, truth.of_drive,
                                         truth.dead_band, truth.tail, deviations.lamp_lag_s, truth.warm_up_share,
                                         truth.ageing_per_hour});
-      heads_.emplace_back(rig.fixtures[f], truth.pan_scale, truth.backlash_rad);
+      heads_.emplace_back(rig.fixtures[f], truth.head);
       if (head_light_ && rig.fixtures[f].moves) {
         moving_.push_back(f);
         turn_light(f);

@@ -43,6 +43,26 @@ TEST(SimulatedHead, TurnsAtItsSpeedAndStopsAtItsTarget) {
   EXPECT_EQ(head.joints().tilt_rad, -kPi / 2);
 }
 
+TEST(SimulatedHead, FollowsItsMotorsLateAndSettles) {
+  HeadTruth truth;
+  truth.speed_share = 0.9;
+  truth.lag_s = 0.05;
+  Head head(tiny_rig().fixtures[1], truth);  // 180°/s pan, 90°/s tilt
+  head.set_target({kPi / 2, 0});
+  for (int i = 0; i < 500; ++i) head.step(0.001);
+  // Behind a ramp, a first-order lag is late by its time constant.
+  EXPECT_NEAR(head.joints().pan_rad, 0.9 * kPi * (0.5 - 0.05), 0.01);
+  for (int i = 0; i < 56; ++i) head.step(0.001);  // the motor stands still
+  EXPECT_TRUE(head.moving());
+  const double left_rad = kPi / 2 - head.joints().pan_rad;
+  EXPECT_NEAR(left_rad, 0.9 * kPi * 0.05, 0.01);
+  for (int i = 0; i < 100; ++i) head.step(0.001);
+  EXPECT_NEAR(kPi / 2 - head.joints().pan_rad, left_rad * std::exp(-2.0), 1e-3);
+  for (int i = 0; i < 600; ++i) head.step(0.001);
+  EXPECT_FALSE(head.moving());
+  EXPECT_EQ(head.joints().pan_rad, kPi / 2);
+}
+
 TEST(SimulatedHead, StaysWithinItsEndStops) {
   Head head(tiny_rig().fixtures[1]);
   head.set_target({100, -100});

@@ -18,6 +18,7 @@ TEST(Deviations, OfARealRigStayWithinWhatTheySay) {
   Rig rig = tiny_rig();
   Deviations real = Deviations::real();
   double low = 9, high = 0, steepest = 0, flattest = 9, farthest_m = 0, widest_rad = 0;
+  double slowest = 9, fastest = 0, slackest_s = 0;
   for (real.seed = 1; real.seed <= 500; ++real.seed)
     for (const FixtureTruth& truth : draw_fixtures(rig, real)) {
       low = std::min(low, truth.output);
@@ -30,8 +31,14 @@ TEST(Deviations, OfARealRigStayWithinWhatTheySay) {
       const Vec3 off_m = truth.world_from_mount.translation_m - rig.fixtures[0].world_from_mount.translation_m;
       farthest_m = std::max(farthest_m, off_m.cwiseAbs().maxCoeff());
       widest_rad = std::max(widest_rad, Eigen::AngleAxisd(truth.photometry_from_lamp).angle());
-      EXPECT_EQ(truth.pan_scale, 1) << "only a bad rig is connected wrongly";
+      slowest = std::min(slowest, truth.head.speed_share);
+      fastest = std::max(fastest, truth.head.speed_share);
+      slackest_s = std::max(slackest_s, truth.head.lag_s);
+      EXPECT_EQ(truth.head.pan_scale, 1) << "only a bad rig is connected wrongly";
     }
+  EXPECT_NEAR(slowest, 0.85, 0.005);
+  EXPECT_NEAR(fastest, 1.075, 0.005);
+  EXPECT_NEAR(slackest_s, 0.06, 0.005);
   EXPECT_GE(low, 0.8);
   EXPECT_LE(high, 1.2);
   EXPECT_LT(low, 0.81);
@@ -71,12 +78,12 @@ TEST(Deviations, SomeHeadsOfABadRigTurnWronglyAndSomeLinesAreSwapped) {
       lines.insert(truths[f].line);
       swapped += truths[f].line != f;
       if (!rig.fixtures[f].moves) {
-        EXPECT_EQ(truths[f].pan_scale, 1);
+        EXPECT_EQ(truths[f].head.pan_scale, 1);
         continue;
       }
       ++heads;
-      mirrored += truths[f].pan_scale == -1;
-      scaled += truths[f].pan_scale == 540.0 / 630.0;
+      mirrored += truths[f].head.pan_scale == -1;
+      scaled += truths[f].head.pan_scale == 540.0 / 630.0;
     }
     for (std::size_t f = 0; f < truths.size(); ++f) EXPECT_EQ(lines.count(f), 1U) << "every line ends somewhere";
   }
@@ -173,7 +180,7 @@ TEST(Deviations, AMeterRespondsToSlantingLightByItsOwnExponent) {
 
 TEST(Deviations, AHeadWithPlayStopsShortOnEitherSide) {
   Fixture fixture = tiny_rig().fixtures[1];
-  Head head(fixture, 1, 0.02);
+  Head head(fixture, {1, 0.02});
   const auto pan_after = [&](double target_rad) {
     head.set_target({target_rad, 0});
     for (int i = 0; i < 500; ++i) head.step(0.01);
@@ -182,7 +189,7 @@ TEST(Deviations, AHeadWithPlayStopsShortOnEitherSide) {
   EXPECT_NEAR(pan_after(0.5), 0.49, 1e-12);
   EXPECT_NEAR(pan_after(1), 0.99, 1e-12);
   EXPECT_NEAR(pan_after(0.5), 0.51, 1e-12);
-  Head mirrored(fixture, -1);
+  Head mirrored(fixture, {-1});
   mirrored.set_target({0.5, 0.2});
   for (int i = 0; i < 500; ++i) mirrored.step(0.01);
   EXPECT_NEAR(mirrored.joints().pan_rad, -0.5, 1e-12);

@@ -13,6 +13,7 @@
 
 #include "core/calibration/head_meter_run.h"
 #include "core/calibration/head_run.h"
+#include "core/output/head_travel.h"
 #include "sim/devices/head.h"
 #include "sim/world/deviations.h"
 #include "tools/bench/heads/head_pictures.h"
@@ -88,17 +89,13 @@ std::size_t head_on_line(const SimulatedRig& rig, std::size_t line) {
   return line;
 }
 
-/// Returns the time that it takes.
-double turn(sim::Head& head, const sim::FixtureTruth& truth, const Fixture& fixture, const Joints& to) {
+/// Returns the time that is waited. at: where it was sent last.
+double turn(sim::Head& head, const Fixture& fixture, std::optional<Joints>& at, const Joints& to) {
   head.set_target(to);
-  double way_s = 0;
-  // With play, its motors go a little farther than the lamp.
-  const Joints lamp = head.joints();
-  const double far_rad =
-      std::max(std::abs(lamp.pan_rad / truth.pan_scale - to.pan_rad), std::abs(lamp.tilt_rad - to.tilt_rad)) +
-      truth.backlash_rad / std::abs(truth.pan_scale);
-  for (; way_s < far_rad / fixture.pan_speed_rad_s; way_s += kStep_s) head.step(kStep_s);
-  return way_s;
+  const double wait_s = stands_still_s(fixture, at, to);
+  for (double way_s = 0; way_s < wait_s; way_s += kStep_s) head.step(kStep_s);
+  at = to;
+  return wait_s;
 }
 
 JudgedHead run_head(SimulatedRig& rig, std::size_t h, const HeadPriors& priors) {
@@ -111,9 +108,10 @@ JudgedHead run_head(SimulatedRig& rig, std::size_t h, const HeadPriors& priors) 
   const auto started = std::chrono::steady_clock::now();
   double picture_seconds = 0;
   HeadRun run(rig.surface, rig.rays, setup);
-  sim::Head head(rig.stated.rig.fixtures[moves], truth.pan_scale, truth.backlash_rad);
+  sim::Head head(rig.stated.rig.fixtures[moves], truth.head);
+  std::optional<Joints> at;
   while (const auto step = run.next()) {
-    const double way_s = turn(head, truth, fixture, step->joints);
+    const double way_s = turn(head, fixture, at, step->joints);
     judged.rig_seconds +=
         step->lit ? way_s + kLampSettles_s + kExposure_s : std::max(way_s, kLampSettles_s + kExposure_s);
     std::optional<HeadPictures::Beam> beam;
@@ -203,11 +201,12 @@ JudgedHead run_head_by_meters(const SimulatedRig& rig, std::size_t h, const Head
   const HeadSetup setup = head_setup(rig.stated.rig, h, priors);
   const auto started = std::chrono::steady_clock::now();
   HeadMeterRun run(meters.stated(), *rig.stated.rig.luminaires[fixture.luminaire].intensity, rig.rays, setup);
-  sim::Head head(rig.stated.rig.fixtures[moves], truth.pan_scale, truth.backlash_rad);
+  sim::Head head(rig.stated.rig.fixtures[moves], truth.head);
+  std::optional<Joints> at;
   while (!run.next().empty()) {
     std::vector<std::vector<double>> read;
     for (const HeadMeterRun::Step& step : run.next()) {
-      judged.rig_seconds += turn(head, truth, fixture, step.joints);
+      judged.rig_seconds += turn(head, fixture, at, step.joints);
       if (!step.read) continue;
       judged.rig_seconds += kMeterDwell_s;
       std::optional<HeadPictures::Beam> beam;
@@ -239,7 +238,7 @@ void judge(const SimulatedRig& rig, std::size_t h, std::uint64_t seed, JudgedHea
     const Approach from{random() % 2 ? 1 : -1, random() % 2 ? 1 : -1};
     const auto sent = fit.pose.joints_towards(to_m, from, with_run_up(fixture.range), {});
     if (!sent) continue;
-    sim::Head head(fixture, truth.pan_scale, truth.backlash_rad);
+    sim::Head head(fixture, truth.head);
     for (const double run_up_rad : {kRunUp_rad, 0.0}) {
       head.set_target({sent->pan_rad - from.pan * run_up_rad, sent->tilt_rad - from.tilt * run_up_rad, 0});
       for (int step = 0; step < 4; ++step) head.step(1);

@@ -45,7 +45,7 @@ Result<HeadTurner::Clock::time_point> HeadTurner::send(std::size_t fixture, cons
   if (auto turned = daemon_.aim(fixture, joints, from_, lit ? 1 : 0); !turned) return tl::unexpected(turned.error());
   const auto heads = zones_.heads();
   const bool by_zones = std::find(heads.begin(), heads.end(), fixture) != heads.end();
-  const double way_s = travel_s(rig_.fixtures[fixture], at_, joints) + (lit && by_zones ? kLitAgain_s : 0);
+  const double way_s = stands_still_s(rig_.fixtures[fixture], at_, joints) + (lit && by_zones ? kLitAgain_s : 0);
   at_ = joints;
   return Clock::now() + kObeys + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(way_s));
 }
