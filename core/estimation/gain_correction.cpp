@@ -250,9 +250,12 @@ Correction GainEstimator::correct(std::span<const double> present, Time now, For
   correction.level = within_limits(list_of((per_light * level).cwiseMin(max_level_)), now);
   for (std::size_t j = 0; j < correction.level.size(); ++j)
     if (is_lost(static_cast<Index>(j))) correction.level[j] = present[j];
-  const VectorXd corrected = vector_of(correction.level);
-  for (const Row& row : rows)
-    correction.aimed_lx.push_back(row.lux_per_level.cwiseProduct(row.factor).dot(corrected.transpose()));
+  const VectorXd corrected = vector_of(correction.level), uncorrected = vector_of(present);
+  for (const Row& row : rows) {
+    const RowVectorXd lux = row.lux_per_level.cwiseProduct(row.factor);
+    correction.aimed_lx.push_back(lux.dot(corrected));
+    correction.now_lx.push_back(lux.dot(uncorrected));
+  }
   return correction;
 }
 

@@ -60,6 +60,7 @@ struct WorstCase {
 struct Correction {
   std::vector<double> level;     ///< per fixture; within max_level and, in the worst case of the evidence, all limits
   std::vector<double> aimed_lx;  ///< per point of the rig: present prediction at `level`
+  std::vector<double> now_lx;    ///< the same at the levels that were corrected
   std::vector<std::string> why;  ///< per point: why it misses its goal; empty: it does not, or For::drift
 };
 

@@ -15,6 +15,8 @@ constexpr Duration kSampleEvery = std::chrono::seconds(1);
 // so more than one correction in ten seconds would only follow noise.
 constexpr int kDriftSamples = 3;
 constexpr Duration kDriftCorrectionEvery = std::chrono::seconds(10);
+// What is known moves a little with the noise of the meters. So many tolerances are a change, and followed at once.
+constexpr double kChange = 2;
 // Level changes smaller than half a step of a 12-bit dimmer are not worth a fade.
 constexpr double kSmallestChange = 1e-4;
 
@@ -118,6 +120,7 @@ void ShowController::State::correct_or_hold(Time now, Correction correction) {
     change = std::max(change, std::abs(correction.level[i] - program.to_level[i]));
   }
   const bool wanted = possible_gain(correction) > rig.control.tolerance;
+  const bool known = rig.daylight || known_gain(correction) > rig.control.tolerance;
   const bool worth_it = change > kSmallestChange && (wanted || !progress.breaches.empty());
   const bool in_rounds = phase == Phase::measuring ? progress.round < rig.control.rounds : true;
   progress.take_aims(correction);
@@ -138,6 +141,8 @@ void ShowController::State::correct_or_hold(Time now, Correction correction) {
   }
   if (hands.all().empty() && !bypassed.any_lamp()) hands.correct(asked);
   ++progress.round;
+  if (phase == Phase::holding && !known)
+    progress.patience = std::min<Duration>(2 * progress.patience, CorrectionProgress::kMostPatience);
   progress.corrected_at = now;
   fade(now, present_levels(now), std::move(correction.level), rig.control.correction_fade_s, rig.control.fade_curve);
   enter(Phase::correcting, now);
@@ -157,8 +162,17 @@ void ShowController::State::watch_drift(Time now) {
 
 void ShowController::State::look_at_drift(Time now, const Correction& correction) {
   progress.drifted = possible_gain(correction) > rig.control.tolerance ? progress.drifted + 1 : 0;
-  if (progress.drifted >= kDriftSamples && now - progress.corrected_at >= kDriftCorrectionEvery)
+  if (progress.drifted >= kDriftSamples && now - progress.corrected_at >= wait_before(correction))
     solve(now, SolveBeside::For::round);
+}
+
+/// Since the last correction. In a daylit room readings change by themselves: there they are followed.
+Duration ShowController::State::wait_before(const Correction& correction) const {
+  const double tolerances = known_gain(correction) / rig.control.tolerance;
+  if (rig.daylight || tolerances > kChange) return kDriftCorrectionEvery;
+  const double share = std::clamp((kChange - tolerances) / (kChange - 1), 0.0, 1.0);
+  return kDriftCorrectionEvery +
+         std::chrono::duration_cast<Duration>(share * (progress.patience - kDriftCorrectionEvery));
 }
 
 /// A meter that contradicts only its own past may have been right then, or may be right now. Trusting it now could

@@ -211,6 +211,9 @@ struct ShowController::State {
   [[nodiscard]] std::vector<double> limited_safe_levels(Time now) const;
   /// Largest |aimed − measured| / goal over the metered goals; 0 without any.
   [[nodiscard]] double possible_gain(const Correction& correction) const;
+  /// The most that it moves the light at a metered goal, by what is known, as a share of the goal.
+  [[nodiscard]] double known_gain(const Correction& correction) const;
+  [[nodiscard]] Duration wait_before(const Correction& correction) const;
   [[nodiscard]] std::optional<std::size_t> meter_at(std::size_t point) const;
   /// True if `lux` is where corrections want the point: at its goal, or at the best that limits allow.
   [[nodiscard]] bool arrived(std::size_t point, double lux) const;

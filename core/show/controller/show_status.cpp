@@ -55,6 +55,16 @@ double ShowController::State::possible_gain(const Correction& correction) const 
   return most;
 }
 
+double ShowController::State::known_gain(const Correction& correction) const {
+  double most = 0;
+  for (const Luxmeter& meter : rig.luxmeters) {
+    const double goal_lx = meter.point ? points_in_force[*meter.point].goal_lx.value_or(0) : 0;
+    if (goal_lx > 0)
+      most = std::max(most, std::abs(correction.aimed_lx[*meter.point] - correction.now_lx[*meter.point]) / goal_lx);
+  }
+  return most;
+}
+
 bool ShowController::State::arrived(std::size_t point, double lux) const {
   if (!points_in_force[point].goal_lx) return true;
   const double goal_lx = *points_in_force[point].goal_lx;
