@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/calibration/ageing.h"
 #include "core/calibration/calibration_report.h"
 #include "core/calibration/camera_section.h"
 #include "core/output/dimming.h"
@@ -98,8 +99,12 @@ std::string list_of(const std::vector<std::string>& sentences) {
 }
 
 std::string fixtures_table(const Calibration& found) {
-  std::string html =
-      "<table><tr><th>fixture</th><th>output over rated</th><th>moved</th><th>turned</th><th>at half level</th></tr>\n";
+  const bool aged = std::any_of(found.fixtures.begin(), found.fixtures.end(),
+                                [](const CalibratedFixture& fixture) { return ageing_of(fixture).has_value(); });
+  std::string html = fmt::format(
+      "<table><tr><th>fixture</th><th>output over rated</th>{}<th>moved</th><th>turned</th>"
+      "<th>at half level</th></tr>\n",
+      aged ? "<th>ageing</th>" : "");
   for (const CalibratedFixture& fixture : found.fixtures) {
     const std::string output = fixture.output.standard_error > 0
                                    ? fmt::format("{:.3f} ± {:.3f}", fixture.output.value, fixture.output.standard_error)
@@ -107,10 +112,11 @@ std::string fixtures_table(const Calibration& found) {
     const std::string curve = fixture.curve.empty()
                                   ? "not measured"
                                   : fmt::format("{:.0f} % of its light", 100 * share_at_level(fixture.curve, 0.5));
-    html +=
-        fmt::format("<tr><td>{}</td><td>{}</td><td>{:.1f} ± {:.1f} cm</td><td>{:.1f} ± {:.1f}°</td><td>{}</td></tr>\n",
-                    escaped_for_markup(fixture.name), output, 100 * fixture.offset_m.norm(),
-                    100 * fixture.offset_error_m.norm(), fixture.turn_deg.norm(), fixture.turn_error_deg.norm(), curve);
+    const std::string ageing = aged ? "<td>" + escaped_for_markup(ageing_words(fixture)) + "</td>" : "";
+    html += fmt::format(
+        "<tr><td>{}</td><td>{}</td>{}<td>{:.1f} ± {:.1f} cm</td><td>{:.1f} ± {:.1f}°</td><td>{}</td></tr>\n",
+        escaped_for_markup(fixture.name), output, ageing, 100 * fixture.offset_m.norm(),
+        100 * fixture.offset_error_m.norm(), fixture.turn_deg.norm(), fixture.turn_error_deg.norm(), curve);
   }
   return html + "</table>\n";
 }

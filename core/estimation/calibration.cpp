@@ -114,6 +114,17 @@ Json json_of(const CalibratedHead& head) {
   return json;
 }
 
+std::optional<FirstOutput> first_of(const JsonReader& reader, const Json& json, const std::string& fixture_path) {
+  const Json* entry = reader.member(json, fixture_path, "first", false);
+  if (!entry) return std::nullopt;
+  if (!entry->is_object()) {
+    reader.wrong_type(fixture_path, "first", "an object in braces", *entry);
+    return std::nullopt;
+  }
+  const std::string path = fixture_path + "/first";
+  return FirstOutput{reader.text(*entry, path, "since", true), ratio_of(reader, *entry, path, "output")};
+}
+
 /// Puts the head where it was found to hang. Its joints are true ones from then on.
 void turn_as_found(const CalibratedHead& head, Fixture& fixture) {
   if (head.upside_down) fixture.world_from_mount.rotation *= Vec3(1, -1, -1).asDiagonal();
@@ -265,6 +276,7 @@ std::string to_json(const Calibration& calibration) {
   for (const CalibratedFixture& fixture : calibration.fixtures) {
     Json& entry = json["fixtures"][fixture.name];
     entry["output"] = pair_of(fixture.output);
+    if (fixture.first) entry["first"] = {{"since", fixture.first->since}, {"output", pair_of(fixture.first->output)}};
     entry["offset_m"] = triple_of(fixture.offset_m);
     entry["offset_error_m"] = triple_of(fixture.offset_error_m);
     entry["turn_deg"] = triple_of(fixture.turn_deg);
@@ -300,6 +312,7 @@ Checked<Calibration> calibration_from_json(const std::string& text, const std::s
     CalibratedFixture fixture;
     fixture.name = name;
     fixture.output = ratio_of(reader, entry, path, "output");
+    fixture.first = first_of(reader, entry, path);
     fixture.offset_m = within(reader, entry, path, "offset_m", kMostOffset_m);
     fixture.offset_error_m = within(reader, entry, path, "offset_error_m", kMostOffset_m).cwiseAbs();
     fixture.turn_deg = within(reader, entry, path, "turn_deg", kMostTurn_deg);

@@ -32,9 +32,16 @@ struct CalibratedHead {
   Known settling_s{};                           ///< from its stated arrival until its beam stands still
 };
 
+/// The output that a lamp was first found to have; what it has lost since is its ageing.
+struct FirstOutput {
+  std::string since;   ///< when, UTC
+  Known output{1, 0};  ///< true over rated flux, > 0
+};
+
 struct CalibratedFixture {
   std::string name;
-  Known output{1, 0};  ///< true over rated flux, > 0
+  Known output{1, 0};                  ///< true over rated flux, > 0
+  std::optional<FirstOutput> first{};  ///< by an earlier calibration of the same lamp
   /// How its mount hangs off the rig file's place, along and about world x, y, z. Emitters of one housing hang together.
   Vec3 offset_m = Vec3::Zero(), offset_error_m = Vec3::Zero();
   Vec3 turn_deg = Vec3::Zero(), turn_error_deg = Vec3::Zero();

@@ -19,6 +19,7 @@ Calibration example() {
   CalibratedFixture lamp;
   lamp.name = "wash/red";
   lamp.output = {1.07, 0.012};
+  lamp.first = {"2026-08-01T06:12:00Z", {1.12, 0.01}};
   lamp.offset_m = {0.03, -0.05, 0};
   lamp.offset_error_m = {0.01, 0.01, 0.02};
   lamp.turn_deg = {1, 0, -2};
@@ -77,6 +78,10 @@ TEST(Calibration, IsTheSameAfterItsFile) {
   ASSERT_EQ(read->fixtures.size(), 2u);  // by name
   EXPECT_EQ(read->fixtures[1].name, "wash/red");
   EXPECT_EQ(read->fixtures[1].output, (Known{1.07, 0.012}));
+  ASSERT_TRUE(read->fixtures[1].first);
+  EXPECT_EQ(read->fixtures[1].first->since, "2026-08-01T06:12:00Z");
+  EXPECT_EQ(read->fixtures[1].first->output, (Known{1.12, 0.01}));
+  EXPECT_FALSE(read->fixtures[0].first);
   EXPECT_EQ(read->fixtures[1].turn_deg, example().fixtures[0].turn_deg);
   EXPECT_EQ(read->fixtures[1].curve, example().fixtures[0].curve);
   ASSERT_TRUE(read->fixtures[0].head);
@@ -136,16 +141,29 @@ TEST(Calibration, SaysWhereAndWhatIsWrong) {
   EXPECT_EQ(refused(with(R"({"output": [1.1, 0.01]})")), "nothing");
   EXPECT_EQ(refused(with(R"({"output": [0, 0.01]})")).find("c.json:2:"), 0u) << refused(with(R"({"output": [0, 1]})"));
   for (const char* wrong :
-       {"{}", "7", R"({"output": 1})", R"({"output": [1, -0.1]})", R"({"output": [1e400, 0]})",
-        R"({"output": [99, 0]})", R"({"output": [1, 0], "offset_m": [1, 2]})", R"({"output": [1, 0], "head": 1})",
+       {"{}",
+        "7",
+        R"({"output": 1})",
+        R"({"output": [1, -0.1]})",
+        R"({"output": [1e400, 0]})",
+        R"({"output": [99, 0]})",
+        R"({"output": [1, 0], "offset_m": [1, 2]})",
+        R"({"output": [1, 0], "head": 1})",
         R"({"output": [1, 0], "head": {}})",
+        R"({"output": [1, 0], "first": 1})",
+        R"({"output": [1, 0], "first": {"since": "today"}})",
+        R"({"output": [1, 0], "first": {"output": [1, 0]}})",
+        R"({"output": [1, 0], "first": {"since": 3, "output": [0, 0]}})",
         R"({"output": [1, 0], "head": {"pan_scale": [0, 0.1], "tilt_scale": [1, 0]}})",
         R"({"output": [1, 0], "head": {"pan_scale": [1, 0], "tilt_scale": [1, 0], "askew_deg": [50, 0]}})",
         R"({"output": [1, 0], "head": {"pan_scale": [1, 0], "tilt_scale": [1, 0], "upside_down": "no"}})",
-        R"({"output": [1, 0], "offset_m": [0, 0, 9]})", R"({"output": [1, 0], "turn_deg": [0, 0, 400]})",
-        R"({"output": [1, 0], "curve": [[0.5, 0.4]]})", R"({"output": [1, 0], "curve": [[1, 1]]})",
+        R"({"output": [1, 0], "offset_m": [0, 0, 9]})",
+        R"({"output": [1, 0], "turn_deg": [0, 0, 400]})",
+        R"({"output": [1, 0], "curve": [[0.5, 0.4]]})",
+        R"({"output": [1, 0], "curve": [[1, 1]]})",
         R"({"output": [1, 0], "curve": [[0.5, 0.4], [0.4, 0.5], [1, 1]]})",
-        R"({"output": [1, 0], "curve": [[0, 0], [1, 1]]})", R"({"output": [1, 0], "curve": [[0.5, "x"], [1, 1]]})"})
+        R"({"output": [1, 0], "curve": [[0, 0], [1, 1]]})",
+        R"({"output": [1, 0], "curve": [[0.5, "x"], [1, 1]]})"})
     EXPECT_NE(refused(with(wrong)), "nothing") << wrong;
   EXPECT_NE(refused("[]"), "nothing");
   EXPECT_NE(refused(R"({"luxrig_calibration": 2, "rig": "r", "made": ""})"), "nothing");

@@ -1,9 +1,11 @@
 #include "tools/luxrig/calibrate/by_hand.h"
 
 #include <algorithm>
+#include <functional>
 
 #include "core/calibration/lamp_steps.h"
 #include "tools/luxrig/calibrate/hand_meter.h"
+#include "tools/luxrig/calibrate/simulated_hand.h"
 
 namespace luxrig {
 namespace {
@@ -38,8 +40,11 @@ HandQuestion question_of(const Measuring& measuring, const HandPlace& place, std
   return question;
 }
 
+/// Answers at one place, under the light that is set. what: at the terminal.
+using Asking = std::function<Result<HandAnswer>(const std::string& what, const HandPlace& place, std::size_t k)>;
+
 /// One place; false = the person is done.
-Result<bool> at_place(Measuring& measuring, HandPlace place, HandMeter& meter) {
+Result<bool> at_place(Measuring& measuring, HandPlace place, const Asking& ask) {
   const Rig& rig = measuring.session.rig;
   std::vector<std::optional<double>> lux(place.steps.size());
   bool done = false;
@@ -49,9 +54,7 @@ Result<bool> at_place(Measuring& measuring, HandPlace place, HandMeter& meter) {
     if (!sent)
       return tl::unexpected(Fault{sent.error().cause, "", words_of(step, rig) + ": " + sent.error().detail, {}});
     step.level = (*sent)[step.fixture];
-    const auto answer = meter.ask(
-        fmt::format("{} of {}, {}", k + 1, place.steps.size(), words_of(step, rig)), question_of(measuring, place, k),
-        DaemonRig::kHoldAgain, [&] { return measuring.daemon.hold_again(); }, measuring.stop);
+    const auto answer = ask(fmt::format("{} of {}, {}", k + 1, place.steps.size(), words_of(step, rig)), place, k);
     if (!answer) return tl::unexpected(answer.error());
     done = answer->what == HandAnswer::What::done;
     if (done || answer->what == HandAnswer::What::other_place) break;
@@ -69,26 +72,50 @@ Result<bool> at_place(Measuring& measuring, HandPlace place, HandMeter& meter) {
   return !done;
 }
 
+/// One place after the other, until the person is done or none would help.
+Result<void> at_best_places(Measuring& measuring, std::optional<int> most, const Asking& ask) {
+  std::vector<std::size_t> been = measuring.no_points();
+  for (int places = 0; !most || places < *most; ++places) {
+    const Rig& rig = measuring.session.rig;
+    const auto place = next_hand_place(rig, measuring.light, measuring.levels, measuring.curves, been);
+    if (!place) {
+      fmt::print("There is no further place that would help.\n");
+      break;
+    }
+    fmt::print("{}\n", place_words(rig.points[place->point]));
+    const auto more = at_place(measuring, *place, ask);
+    if (!more) return tl::unexpected(more.error());
+    if (!*more) break;
+    been.push_back(place->point);
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<void> measure_by_hand(Measuring& measuring, const std::optional<std::filesystem::path>& meter_file) {
-  const Rig& rig = measuring.session.rig;
   PageQuestion page(measuring.daemon.daemon(), DaemonRig::kHeld_s);
   HandMeter meter(meter_file, page);
   fmt::print(
       "Type each reading in lux{}. s skips a lamp, n goes to another place, q ends. The daemon's page asks, too: "
       "luxrig page opens it.\n\n",
       meter.has_file() ? ", or Enter alone to take it from the meter's file" : "");
-  std::vector<std::size_t> been = measuring.no_points();
-  while (const auto place = next_hand_place(rig, measuring.light, measuring.levels, measuring.curves, been)) {
-    fmt::print("{}\n", place_words(rig.points[place->point]));
-    const auto more = at_place(measuring, *place, meter);
-    if (!more) return tl::unexpected(more.error());
-    if (!*more) return {};
-    been.push_back(place->point);
-  }
-  fmt::print("There is no further place that would help.\n");
-  return {};
+  return at_best_places(measuring, std::nullopt, [&](const std::string& what, const HandPlace& place, std::size_t k) {
+    return meter.ask(
+        what, question_of(measuring, place, k), DaemonRig::kHoldAgain, [&] { return measuring.daemon.hold_again(); },
+        measuring.stop);
+  });
+}
+
+Result<void> measure_by_simulated_hand(Measuring& measuring, int places, const std::string& world) {
+  if (!measuring.daemon.sim_control()) return refusal("the daemon's rig is real: somebody has to hold the luxmeter");
+  SimulatedHand hand(*measuring.daemon.sim_control(), world);
+  fmt::print("A simulated hand holds the luxmeter, at {} places at most.\n\n", places);
+  return at_best_places(measuring, places, [&](const std::string& what, const HandPlace& place, std::size_t) {
+    auto answer = hand.read(measuring.session.rig.points[place.point], measuring.stop);
+    if (answer) fmt::print("  {}: {}\n", what, words_of(*answer));
+    return answer;
+  });
 }
 
 }  // namespace luxrig

@@ -1,8 +1,9 @@
 #pragma once
-/// Readings of a luxmeter in a hand, typed or taken from its file, wherever they help most.
+/// Readings of a luxmeter in a hand, wherever they help most: typed, taken from its file, or of a simulated hand.
 
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include "tools/luxrig/calibrate/measuring.h"
 
@@ -12,5 +13,7 @@ namespace luxrig {
 /// what is read.
 [[nodiscard]] Result<void> measure_by_hand(Measuring& measuring,
                                            const std::optional<std::filesystem::path>& meter_file);
+/// The same by a simulated hand in the daemon's simulated rig, at so many places at most. world: what it says of itself.
+[[nodiscard]] Result<void> measure_by_simulated_hand(Measuring& measuring, int places, const std::string& world);
 
 }  // namespace luxrig

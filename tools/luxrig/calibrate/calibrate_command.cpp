@@ -9,6 +9,7 @@
 #include <memory>
 #include <utility>
 
+#include "core/calibration/ageing.h"
 #include "core/calibration/calibration_report.h"
 #include "core/calibration/meter_run.h"
 #include "core/calibration/open_run.h"
@@ -18,6 +19,7 @@
 #include "tools/luxrig/calibrate/by_camera.h"
 #include "tools/luxrig/calibrate/by_hand.h"
 #include "tools/luxrig/calibrate/by_heads.h"
+#include "tools/luxrig/calibrate/by_open_hours.h"
 #include "tools/luxrig/calibrate/daemon_rig.h"
 #include "tools/luxrig/calibrate/head_motions.h"
 #include "tools/luxrig/calibrate/heads_by_meters.h"
@@ -45,6 +47,7 @@ struct CalibrateArguments {
   std::string hours = "closed";
   double open_minutes = 28;
   std::vector<std::string> cameras;                 ///< names
+  int sim_hand = 0;                                 ///< places where a simulated hand reads; 0 = a person does
   bool no_heads = false;                            ///< pan-tilt heads are left as they are
   std::optional<std::filesystem::path> meter_file;  ///< of the meter in the hand
   std::optional<std::filesystem::path> file;        ///< none = calibration.json beside the rig file
@@ -52,13 +55,6 @@ struct CalibrateArguments {
 
 /// Share of full light at which the goals' error is told.
 constexpr double kLevelOfUse = 0.4;
-/// In opening hours: no step takes less. Most take longer, by the rig's fade and its slowest meter.
-constexpr double kShortestOpenStep_s = 2;
-constexpr double kLikelyOpenStep_s = 4.3;
-/// So slowly that nobody sees 2 %; and what the show has to correct at the end.
-constexpr double kOpenFade_s = 1, kBackToTheShow_s = 20;
-/// A lamp that is off has this level instead of none.
-constexpr double kDimmestLevel = 0.01;
 
 std::string utc_now() {
   const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
@@ -81,124 +77,21 @@ Result<void> keep_old(const std::filesystem::path& file) {
   return tl::unexpected(Fault{Cause::system, "", kept.string() + " cannot be written: " + error.message(), {}});
 }
 
-/// All lamps at once, so dim that few limits are in the way; the daemon keeps them.
-std::vector<double> together(const Measuring& measuring) {
-  const std::vector<double>& alone = measuring.levels.brightest;
-  std::vector<double> level;
-  for (const double brightest : alone) level.push_back(brightest / std::max<double>(1, std::sqrt(alone.size())));
-  return level;
-}
-
 std::function<void(std::size_t)> progress_of(const char* what, std::size_t steps) {
   return [steps, progress = progress_line(what)](std::size_t done) {
     if (progress) progress(static_cast<double>(done) / static_cast<double>(steps));
   };
 }
 
-/// Which lamps take part, told before it begins.
-void tell_of_open_hours(const Rig& rig, const OpenRun& run, double minutes) {
-  for (const OpenRun::LeftOut& left : run.left_out())
-    fmt::print("\"{}\" takes no part: {}.\n", rig.fixtures[left.fixture].name, left.why);
-  fmt::print(
-      "{} lamps are measured for {:.0f} minutes. No step changes the light at any place by more than {:.0f} %. The "
-      "look is held meanwhile: the show corrects nothing and dims no lamp to find faults until the end.\n",
-      run.part().size(), minutes, 100 * OpenRun::kLargestStep);
-  std::fflush(stdout);
-}
-
-/// While visitors are there: the look stays, and each lamp changes by a hair. As many whole rounds of the pattern as there
-/// is time for, at least one.
-Result<void> by_meters_in_open_hours(Measuring& measuring, double minutes) {
-  const Rig& rig = measuring.session.rig;
-  if (auto steady = measuring.daemon.wait_until_steady(measuring.stop); !steady) return steady;
-  const auto look = measuring.daemon.levels_now();
-  if (!look) return tl::unexpected(look.error());
-  const double wanted_s = 60 * minutes;
-  const OpenRun one_round(rig, *look, 1);
-  const auto period = static_cast<double>(one_round.period());
-  tell_of_open_hours(rig, one_round, minutes);
-  if (one_round.plan().empty())
-    return tl::unexpected(Fault{Cause::invalid,
-                                "",
-                                "no lamp can be measured so: apply a plan that lights lamps that dim, or measure with "
-                                "--hours closed",
-                                {}});
-  if (period * kLikelyOpenStep_s > wanted_s)
-    return tl::unexpected(
-        Fault{Cause::invalid,
-              "",
-              fmt::format(
-                  "{} lamps take about {:.0f} minutes; give it so many with --minutes, or measure with --hours closed",
-                  one_round.part().size(), std::ceil(period * kLikelyOpenStep_s / 60)),
-              {}});
-  measuring.daemon.fade_in(kOpenFade_s, kBackToTheShow_s);
-  using Steady = std::chrono::steady_clock;
-  const auto progress = progress_line("measuring");
-  const auto begun = Steady::now();
-  const auto elapsed_s = [&] { return std::chrono::duration<double>(Steady::now() - begun).count(); };
-  const int rounds = 1 + static_cast<int>(wanted_s / (kShortestOpenStep_s * period));
-  std::vector<OpenRun> runs{OpenRun(rig, *look, rounds)};
-  std::vector<double> before = *look;
-  int limited = 0;
-  double round_s = 0;
-  for (std::size_t done = 0; elapsed_s() + round_s < wanted_s;) {
-    OpenRun& run = runs.back();
-    if (run.plan().empty() || done >= run.plan().size()) break;
-    const double round_began_s = elapsed_s();
-    bool small = true;
-    const auto read = measuring.daemon.measure(
-        std::span(run.plan()).subspan(done, run.period()), {},
-        [&](std::size_t) {
-          if (progress) progress(std::min(1.0, elapsed_s() / wanted_s));
-        },
-        measuring.stop,
-        [&](const DaemonRig::Read& light) {
-          small = run.is_small_step(before, light.sent);
-          before = light.sent;
-          return small;
-        });
-    if (!read) return tl::unexpected(read.error());
-    for (std::size_t k = 0; k + (small ? 0 : 1) < read->size(); ++k) run.take((*read)[k].sent, (*read)[k].readings);
-    round_s = elapsed_s() - round_began_s;
-    done += run.period();
-    if (small) continue;
-    // A limit took light: it goes on from what is left.
-    ++limited;
-    done = 0;
-    runs.emplace_back(rig, before, rounds);
-  }
-  if (limited > 0)
-    fmt::print("{} times a limit took light from the look. That is the show's own; it was measured on from there.\n",
-               limited);
-  const OpenRun& longest = *std::max_element(
-      runs.begin(), runs.end(), [](const OpenRun& a, const OpenRun& b) { return a.steps_taken() < b.steps_taken(); });
-  measuring.light.read_at(
-      Eigen::Map<const Eigen::VectorXd>(longest.look().data(), static_cast<Eigen::Index>(longest.look().size()))
-          .cwiseMax(kDimmestLevel));
-  std::vector<LightReading> readings;
-  for (const OpenRun& run : runs)
-    for (LightReading& reading : run.readings(*measuring.first_slope)) readings.push_back(std::move(reading));
-  if (readings.empty())
-    return tl::unexpected(
-        Fault{Cause::invalid,
-              "",
-              fmt::format("in {:.0f} minutes the luxmeters told nothing of any lamp; give it more --minutes",
-                          elapsed_s() / 60),
-              {}});
-  measuring.any = true;
-  measuring.slope_of = longest.part();
-  return measuring.light.learn(readings);
-}
-
 Result<void> by_hanging_meters(Measuring& measuring) {
   const Rig& rig = measuring.session.rig;
   MeterRun run(rig, measuring.levels.brightest, measuring.light.stated_lux());
+  const auto together = levels_together(rig, measuring.light.stated_lux(), measuring.levels.brightest);
   for (std::size_t taken = 0; taken < run.plan().size();) {
     const char* what = taken == 0 ? "measuring each lamp alone" : "measuring dimmed lamps";
     std::vector<std::vector<double>> lights;
     for (const auto& lit : std::span(run.plan()).subspan(taken)) lights.push_back(levels_of(lit, rig));
-    const auto read =
-        measuring.daemon.measure(lights, together(measuring), progress_of(what, lights.size()), measuring.stop);
+    const auto read = measuring.daemon.measure(lights, together, progress_of(what, lights.size()), measuring.stop);
     if (!read) return tl::unexpected(read.error());
     for (const DaemonRig::Read& light : *read) run.take(light.sent, light.readings);
     taken += read->size();
@@ -309,6 +202,9 @@ void print_report(const Measuring& measuring, const GoalError& before, const Cal
                : curve.empty() ? "not measured"
                                : fmt::format("{:.0f} % of its light at half level", 100 * share_at_level(curve, 0.5))});
   }
+  for (const CalibratedFixture& fixture : told.found.fixtures)
+    if (const std::string aged = ageing_words(fixture); !aged.empty())
+      fmt::print("\"{}\" gives {}.\n", fixture.name, aged);
   fmt::print("{}{}\nThe light at {} goals was known to {}. Now it is known to {}.\n", lamps.text(), note, before.goals,
              known_words(before), known_words(measuring.light.error_of_goals(measuring.levels.use)));
   if (told.variance) fmt::print("What is left of its variance: {}.\n", budget_words(told.variance));
@@ -395,8 +291,11 @@ int run_calibrate(const CalibrateArguments& arguments) {
     if (!measured) return report(measured.error());
     heads = std::move(*measured);
   }
-  if (arguments.hand)
-    if (auto measured = measure_by_hand(measuring, arguments.meter_file); !measured) return report(measured.error());
+  if (arguments.hand) {
+    auto measured = arguments.sim_hand > 0 ? measure_by_simulated_hand(measuring, arguments.sim_hand, world)
+                                           : measure_by_hand(measuring, arguments.meter_file);
+    if (!measured) return report(measured.error());
+  }
 
   if (!measuring.any) {
     fmt::print(stderr, "luxrig: nothing was measured, so nothing is written\n");
@@ -405,6 +304,7 @@ int run_calibrate(const CalibrateArguments& arguments) {
   if (auto kept = keep_old(file); !kept) return report(kept.error());
   Calibration found = calibration_of(*session, *light, measuring.curves, utc_now());
   found.simulated = world;
+  if (earlier) keep_first_outputs(*earlier, found);
   put_heads(rig, heads, earlier ? &*earlier : nullptr, found);
   put_cameras(rig, views, measuring.seen, *light, earlier ? &*earlier : nullptr, found);
   if (auto written = write_file(file, to_json(found)); !written) return report(written.error());
@@ -460,6 +360,12 @@ Action declare_calibrate(CLI::App& command) {
   command.add_flag("--no-heads", calibrate->no_heads, "do not turn the rig's pan-tilt heads to see how they hang");
   command.add_option("--meter-file", calibrate->meter_file,
                      "with --hand: file that the meter's program writes; Enter alone takes its last reading");
+  command
+      .add_option("--sim-hand", calibrate->sim_hand,
+                  "with --hand and a simulated rig: a simulated hand reads, at so many places at most")
+      ->type_name("PLACES")
+      ->check(CLI::Range(1, 100))
+      ->needs("--hand");
   command
       .add_option("--hours", calibrate->hours,
                   "open: the look stays and no step changes the light anywhere by more than 2 %, for --minutes; "
