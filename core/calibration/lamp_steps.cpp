@@ -14,7 +14,7 @@ namespace luxrig {
 namespace {
 
 /// Lamps may be this much stronger than stated, and their light this power of the level, and a limit still holds.
-constexpr double kStrongest = 1.35, kFlattest = 0.8;
+constexpr double kStrongest = 1.5, kFlattest = 0.8;
 /// A share of a curve whose error is larger says nothing of how well the curve is known; above that one, nothing at all.
 constexpr double kMostCurveError = 0.05, kTellsNothing = 0.3;
 /// No share is known better.

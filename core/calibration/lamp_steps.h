@@ -23,8 +23,8 @@ struct LampStep {
 /// The same for several lamps at once; none = every lamp is dark.
 [[nodiscard]] std::vector<double> levels_of(std::span<const LampStep> lit, const Rig& rig);
 
-/// The most that a lamp may give of its stated light at this level, as a share of that at full level: it may be a third
-/// stronger than stated, and its dimmer the flattest of the field, whose light is level^0.8.
+/// The most that a lamp may give at a place at this level, over what is stated there at full level: half as much again, as
+/// its output and its mount are off, and its dimmer the flattest of the field, whose light is level^0.8.
 [[nodiscard]] double most_share(double level);
 
 /// Per fixture, the brightest level at which it may be measured alone: no limit is exceeded, even if it gives

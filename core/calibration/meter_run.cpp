@@ -23,6 +23,20 @@ constexpr double kMatters = 0.3;
 /// Light at half level is at most this share of that at the full one, for dimmers down to an exponent of 0.75.
 constexpr double kMostAtHalf = 0.6;
 
+/// So often a lamp may be tried brighter; less than this more is not worth a light.
+constexpr int kTimesBrighter = 2;
+constexpr double kBrighter = 1.1;
+/// At a limit, a lamp may give so much more than where a meter shows it, over what is stated: its mount is off. At the
+/// limit's own meter, only as much as the meter is off.
+constexpr double kElsewhere = 1.35;
+/// Light rises with at most this power of the level, for dimmers of the field; once two levels are read, with at most so
+/// much more than between them.
+constexpr double kSteepest = 2.5, kSteeper = 0.3;
+/// What is sent is rounded by the wire.
+constexpr double kSameLevel = 1e-3;
+/// A reading that is less sure says nothing of how bright a lamp is.
+constexpr double kSure = 0.05;
+
 }  // namespace
 
 MeterRun::MeterRun(const Rig& rig, std::span<const double> brightest, Eigen::MatrixXd stated_lux)
@@ -58,9 +72,14 @@ void MeterRun::take(std::span<const double> sent, std::span<const std::optional<
     plan_again();
     if (taken_.size() < plan_.size()) return;
   }
-  if (stage_ == Stage::again) {
-    stage_ = Stage::dimmed;
-    plan_curves();
+  while (stage_ == Stage::again || stage_ == Stage::brighter) {
+    if (stage_ == Stage::brighter) settle_brighter();
+    stage_ = times_brighter_++ < kTimesBrighter ? Stage::brighter : Stage::dimmed;
+    if (stage_ == Stage::brighter)
+      plan_brighter();
+    else
+      plan_curves();
+    if (taken_.size() < plan_.size()) return;
   }
   if (taken_.size() == plan_.size()) find_curves();
 }
@@ -77,8 +96,11 @@ std::optional<SteadyReading> MeterRun::above_dark(std::size_t light, std::size_t
 }
 
 std::optional<SteadyReading> MeterRun::light_alone(std::size_t fixture, std::size_t luxmeter) const {
-  for (auto light = alone_at_[fixture].rbegin(); light != alone_at_[fixture].rend(); ++light)
+  const double level = level_alone(fixture);
+  for (auto light = alone_at_[fixture].rbegin(); light != alone_at_[fixture].rend(); ++light) {
+    if (taken_[*light].sent[fixture] < (1 - kSameLevel) * level) break;
     if (auto read = above_dark(*light, luxmeter)) return read;
+  }
   return std::nullopt;
 }
 
@@ -107,6 +129,81 @@ void MeterRun::plan_again() {
   }
 }
 
+std::optional<std::size_t> MeterRun::best_meter(std::size_t fixture) const {
+  std::optional<std::size_t> best;
+  double least = kSure;
+  for (std::size_t m = 0; m < rig_->luxmeters.size(); ++m) {
+    const auto lit = light_alone(fixture, m);
+    if (!lit || !(lit->standard_error_lx < least * lit->lux)) continue;
+    least = lit->standard_error_lx / lit->lux;
+    best = m;
+  }
+  return best;
+}
+
+std::optional<double> MeterRun::over_stated(std::size_t fixture) const {
+  const auto meters = static_cast<Index>(rig_->luxmeters.size());
+  const auto stated_lx = stated_lux_.col(static_cast<Index>(fixture)).tail(meters);
+  double over = 0;
+  for (Index m = 0; m < meters; ++m) {
+    const auto lit = light_alone(fixture, static_cast<std::size_t>(m));
+    const double share = 1 + rig_->luxmeters[static_cast<std::size_t>(m)].tolerance;
+    if (lit && lit->standard_error_lx < kSure * lit->lux && stated_lx[m] >= kMatters * stated_lx.maxCoeff())
+      over = std::max(over, share * lit->lux / (level_alone(fixture) * stated_lx[m]));
+  }
+  return over > 0 ? std::optional(over) : std::nullopt;
+}
+
+double MeterRun::most_lux(std::size_t point, std::size_t fixture) const {
+  const double stated_lx = stated_lux_(static_cast<Index>(point), static_cast<Index>(fixture));
+  const double level = level_alone(fixture);
+  for (std::size_t m = 0; m < rig_->luxmeters.size(); ++m)
+    if (const auto lit = light_alone(fixture, m); lit && rig_->luxmeters[m].point == point)
+      return (lit->lux + 3 * lit->standard_error_lx) * (1 + rig_->luxmeters[m].tolerance);
+  const auto over = over_stated(fixture);
+  return over ? kElsewhere * *over * stated_lx * level : stated_lx * most_share(level);
+}
+
+std::optional<double> MeterRun::brighter_level(std::size_t fixture) const {
+  if (!over_stated(fixture)) return std::nullopt;
+  const double level = level_alone(fixture);
+  double steepness = kSteepest;
+  if (const auto first = alone_at_[fixture].front(); taken_[first].sent[fixture] < (1 - kSameLevel) * level)
+    if (const auto meter = best_meter(fixture))
+      if (const auto dim = above_dark(first, *meter); dim && dim->lux > 0)
+        steepness = std::clamp(
+            std::log(light_alone(fixture, *meter)->lux / dim->lux) / std::log(level / taken_[first].sent[fixture]) +
+                kSteeper,
+            1.0, kSteepest);
+  double room = std::numeric_limits<double>::infinity();
+  for (std::size_t p = 0; p < rig_->points.size(); ++p)
+    if (const double most_lx = most_lux(p, fixture); rig_->points[p].max_lx && most_lx > 0)
+      room = std::min(room, *rig_->points[p].max_lx / most_lx);
+  return std::min(rig_->max_level(rig_->fixtures[fixture]), level * std::pow(room, 1 / steepness));
+}
+
+void MeterRun::plan_brighter() {
+  for (std::size_t f = 0; f < rig_->fixtures.size(); ++f) {
+    const double level = level_alone(f);
+    if (rig_->fixtures[f].switched || !(level > 0) || level >= rig_->max_level(rig_->fixtures[f])) continue;
+    // A lamp that was not worth a brighter light once is not the next time.
+    if (times_brighter_ > 1 && level < (1 + kSameLevel) * taken_[alone_at_[f].front()].sent[f]) continue;
+    const auto brighter = brighter_level(f);
+    if (!brighter || *brighter < kBrighter * level) continue;
+    add({{f, *brighter}});
+    alone_at_[f].push_back(plan_.size() - 1);
+  }
+}
+
+void MeterRun::settle_brighter() {
+  for (std::size_t f = 0; f < rig_->fixtures.size(); ++f) {
+    if (alone_at_[f].empty()) continue;
+    const double first = taken_[alone_at_[f].front()].sent[f];
+    while (level_alone(f) > first * (1 + kSameLevel) && !best_meter(f)) alone_at_[f].pop_back();
+    if (level_alone(f) > first * (1 + kSameLevel)) brightest_[f] = level_alone(f);
+  }
+}
+
 void MeterRun::plan_curves() {
   first_of_curves_ = plan_.size();
   const auto meters = static_cast<Index>(rig_->luxmeters.size()), fixtures = static_cast<Index>(rig_->fixtures.size());
@@ -122,9 +219,12 @@ void MeterRun::plan_curves() {
     }
   }
   const auto may = [&](std::span<const std::size_t> lamps) {
-    Eigen::VectorXd level = Eigen::VectorXd::Zero(fixtures);
-    for (const std::size_t f : lamps) level[static_cast<Index>(f)] = kMostAtHalf * brightest_[f];
-    return keeps_limits(*rig_, stated_lux_, level);
+    for (std::size_t p = 0; p < rig_->points.size(); ++p) {
+      double most_lx = 0;
+      for (const std::size_t f : lamps) most_lx += rig_->points[p].max_lx ? kMostAtHalf * most_lux(p, f) : 0;
+      if (rig_->points[p].max_lx && most_lx > *rig_->points[p].max_lx) return false;
+    }
+    return true;
   };
   for (const std::vector<std::size_t>& group : curve_groups(alone_, may)) {
     for (const double share : std::span(kCurveShares).subspan(1)) {

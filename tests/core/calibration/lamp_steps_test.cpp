@@ -105,7 +105,7 @@ TEST(LampCurve, LeavesOutWhatDoesNotRise) {
   EXPECT_LT(share_at_level(curve.of_level, 0.5), 0.9);
 }
 
-TEST(BrightestLevels, KeepEveryLimitWithLampsAThirdStronger) {
+TEST(BrightestLevels, KeepEveryLimitWithLampsHalfAsStrongAgain) {
   Rig rig;
   rig.luminaires.resize(1);
   rig.fixtures.resize(3);
@@ -117,15 +117,15 @@ TEST(BrightestLevels, KeepEveryLimitWithLampsAThirdStronger) {
   const auto levels = brightest_levels(rig, lux);
   ASSERT_EQ(levels.size(), 3U);
   EXPECT_EQ(levels[0], 1);
-  EXPECT_LE(levels[1] * 100 * 1.333, 50);
-  EXPECT_GT(levels[1], 0.28);
+  EXPECT_LE(levels[1] * 100 * 1.5, 50);
+  EXPECT_GT(levels[1], 0.25);
   EXPECT_EQ(levels[2], 0) << "a switch cannot be dimmed under a limit";
 }
 
-/// 400 rooms with lamps of the field: outputs ± 20 %, light as a power 0.8 to 2.4 of the level.
+/// 400 rooms with lamps of the field: outputs from 20 % less to 40 % more at a place, light as a power 0.8 to 2.4 of the level.
 TEST(LevelsTogether, KeepEveryLimitThroughAnyDimmerOfTheFieldAsEachLampAloneDoes) {
   std::mt19937 random(5);
-  std::uniform_real_distribution<double> share(0, 1), output(0.8, 1.2), exponent(0.8, 2.4);
+  std::uniform_real_distribution<double> share(0, 1), output(0.8, 1.4), exponent(0.8, 2.4);
   double nearest = 0;
   for (int room = 0; room < 400; ++room) {
     const int lamps = 1 + room % 12, points = 1 + room % 5;

@@ -138,7 +138,8 @@ VectorXd shares_of(const Rig& rig, const MeasuredRig& measured, bool meters) {
 }
 
 /// Per fixture: where the meters read its curve from, else its level of use.
-VectorXd levels_read(const MeasuredRig& measured, const std::vector<double>& brightest) {
+VectorXd levels_read(const MeasuredRig& measured) {
+  const std::vector<double>& brightest = measured.run.brightest();
   VectorXd level(static_cast<Index>(brightest.size()));
   for (std::size_t f = 0; f < brightest.size(); ++f)
     level[static_cast<Index>(f)] =
@@ -334,7 +335,7 @@ Result<Learnt> learn_case(const Stated& stated, const Case& how, const MeasuredR
   std::vector<LightReading> readings;
   if (how.meters) {
     readings = measured.run.readings();
-    learnt.light.read_at(levels_read(measured, stated.brightest));
+    learnt.light.read_at(levels_read(measured));
   }
   if (by_camera)
     for (LightReading& reading : readings) reading.receiver += stated.seen->places;

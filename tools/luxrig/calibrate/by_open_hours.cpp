@@ -21,8 +21,6 @@ constexpr double kShortestOpenStep_s = 2;
 constexpr double kLikelyOpenStep_s = 4.3;
 /// So slowly that nobody sees 2 %; and what the show has to correct at the end.
 constexpr double kOpenFade_s = 1, kBackToTheShow_s = 20;
-/// A lamp that is off has this level instead of none.
-constexpr double kDimmestLevel = 0.01;
 
 /// Which lamps take part, told before it begins.
 void tell_of_open_hours(const Rig& rig, const OpenRun& run, double minutes) {

@@ -97,9 +97,12 @@ Result<void> by_hanging_meters(Measuring& measuring) {
     taken += read->size();
   }
   measuring.curves = run.curves();
+  measuring.levels.brightest = run.brightest();
   std::vector<LightReading> readings = run.readings();
   measuring.any = measuring.any || !readings.empty();
   for (LightReading& reading : readings) reading.receiver += measuring.no_points().size();
+  measuring.light.read_at(
+      Eigen::Map<const Eigen::VectorXd>(run.brightest().data(), std::ssize(run.brightest())).cwiseMax(kDimmestLevel));
   return measuring.light.learn(readings);
 }
 

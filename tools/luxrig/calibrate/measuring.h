@@ -16,6 +16,9 @@
 
 namespace luxrig {
 
+/// A lamp that is off has this level instead of none, where its level is taken to be read.
+inline constexpr double kDimmestLevel = 0.01;
+
 struct Measuring {
   const Session& session;
   DaemonRig& daemon;
