@@ -250,17 +250,39 @@ LightError error_of(const Calibration& calibration, const CalibratedFixture& fix
   double brightest = 0;
   for (const CalibratedLight& light : calibration.lights)
     if (light.fixture == fixture.name) brightest = std::max(brightest, light.lux.value);
-  double variance = 0, points = 0;
+  double variance = 0, least = std::numeric_limits<double>::infinity(), points = 0;
   for (const CalibratedLight& light : calibration.lights) {
     if (light.fixture != fixture.name || !(light.lux.value > kLights * brightest)) continue;
-    variance += std::pow(light.lux.standard_error / light.lux.value, 2);
+    const double of_point = std::pow(light.lux.standard_error / light.lux.value, 2);
+    variance += of_point;
+    least = std::min(least, of_point);
     ++points;
   }
   const bool measured = fixture.output.standard_error > 0;
   const double output = measured ? fixture.output.standard_error / fixture.output.value : 0;
-  const double local = points > 0 ? std::sqrt(std::max(0.0, variance / points - output * output)) : 0;
-  return {measured ? output : std::numeric_limits<double>::quiet_NaN(),
-          std::max({local, fixture.curve_error, kSmallestLocal})};
+  const auto beside_output = [&](double of_points) {
+    const double local = points > 0 ? std::sqrt(std::max(0.0, of_points - output * output)) : 0;
+    return std::max({local, fixture.curve_error, kSmallestLocal});
+  };
+  return {measured ? output : std::numeric_limits<double>::quiet_NaN(), beside_output(variance / points),
+          beside_output(least)};
+}
+
+/// What was found of lamps that shine where they do in the rig file.
+void put_known_lights(const Calibration& calibration, Rig& rig) {
+  if (calibration.as_found == 0) return;
+  rig.known_lights_of = calibration.as_found;
+  for (const CalibratedLight& light : calibration.lights) {
+    const auto point =
+        std::find_if(rig.points.begin(), rig.points.end(), [&](const Point& each) { return each.name == light.point; });
+    const auto fixture = std::find_if(rig.fixtures.begin(), rig.fixtures.end(),
+                                      [&](const Fixture& each) { return each.name == light.fixture; });
+    if (point == rig.points.end() || fixture == rig.fixtures.end() || fixture->moves || !(light.lux.value > 0))
+      continue;
+    rig.known_lights.push_back({static_cast<std::size_t>(point - rig.points.begin()),
+                                static_cast<std::size_t>(fixture - rig.fixtures.begin()), light.lux.value,
+                                light.lux.standard_error});
+  }
 }
 
 }  // namespace
@@ -271,6 +293,7 @@ std::string to_json(const Calibration& calibration) {
   json["rig"] = calibration.rig;
   json["made"] = calibration.made;
   json["made_for"] = fmt::format("{:016x}", calibration.made_for);
+  if (calibration.as_found != 0) json["as_found"] = fmt::format("{:016x}", calibration.as_found);
   if (!calibration.simulated.empty()) json["simulated"] = calibration.simulated;
   json["fixtures"] = json["materials"] = json["luxmeters"] = json["points"] = Json::object();
   for (const CalibratedFixture& fixture : calibration.fixtures) {
@@ -306,6 +329,7 @@ Checked<Calibration> calibration_from_json(const std::string& text, const std::s
   calibration.rig = reader.text(json, "", "rig", true);
   calibration.made = reader.text(json, "", "made", true);
   calibration.made_for = reader.fingerprint(json, "", "made_for");
+  calibration.as_found = reader.fingerprint(json, "", "as_found");
   calibration.simulated = reader.text(json, "", "simulated", false);
   each_named(reader, json, "fixtures", [&](const std::string& name, const Json& entry, const std::string& list) {
     const std::string path = list + "/" + name;
@@ -383,6 +407,7 @@ Checked<Rig> calibrated(Rig rig, const Calibration& calibration, const std::stri
   for (const CalibratedMaterial& material : calibration.materials)
     rig.scene.paint.emplace_back(material.name, material.reflectance.value);
   if (!problems.empty()) return tl::unexpected(std::move(problems));
+  put_known_lights(calibration, rig);
   rig.calibrated = calibration.made;
   rig.calibrated_on = calibration.simulated;
   return rig;

@@ -85,6 +85,8 @@ struct Calibration {
   std::string rig;
   std::string made;            ///< when, UTC, as 2026-11-28T06:12:00Z
   std::uint64_t made_for = 0;  ///< RigVersion::light of the rig file then
+  /// RigVersion::light of the rig as it was found to be: `lights` hold as long as that is the same; 0 = they do not.
+  std::uint64_t as_found = 0;
   std::string simulated;       ///< which simulated rig was measured: "real, seed 1"; empty = the real one
   std::vector<CalibratedFixture> fixtures;
   std::vector<CalibratedMaterial> materials;

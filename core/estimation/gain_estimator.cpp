@@ -62,8 +62,10 @@ GainEstimator::GainEstimator(const Rig& rig, const LightModel& model)
                   model.point_fixed_lx, fixed, "point_fixed_lx");
   meter_ = joined(matrix_or_zero(model.meter_lux_per_level, meters, fixtures, "meter_lux_per_level"),
                   model.meter_fixed_lx, fixed, "meter_fixed_lx");
-  point_error_ = joined(matrix_or_zero(model.point_standard_error, points, fixtures, "point_standard_error"),
-                        model.point_fixed_error_lx, fixed, "point_fixed_error_lx");
+  const MatrixXd traced_error = matrix_or_zero(model.point_standard_error, points, fixtures, "point_standard_error"),
+                 known_error = matrix_or_zero(model.point_known_error, points, fixtures, "point_known_error");
+  point_error_ = joined((traced_error.cwiseAbs2() + known_error.cwiseAbs2()).cwiseSqrt(), model.point_fixed_error_lx,
+                        fixed, "point_fixed_error_lx");
   meter_error_ = joined(matrix_or_zero(model.meter_standard_error, meters, fixtures, "meter_standard_error"),
                         model.meter_fixed_error_lx, fixed, "meter_fixed_error_lx");
   any_aim_ = model.any_aim_lux_per_level;

@@ -16,6 +16,8 @@ struct LightModel {
   /// Per fixture, after a calibration: standard deviations of its output over the model's, and of its light at a place
   /// beside that, as shares. NaN or empty = as wide as the rig file allows.
   Eigen::VectorXd gain_sd, local_sd;
+  /// Points × fixtures, after a calibration: standard error of each entry beside those; empty = none.
+  Eigen::MatrixXd point_known_error;
   /// Points × fixtures: the most that a head can give, wherever it is aimed (core/tasks/any_aim.h); 0 for lamps that do
   /// not turn. Empty = not known, so that no head may be turned by hand where points have limits.
   Eigen::MatrixXd any_aim_lux_per_level;

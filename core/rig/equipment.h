@@ -51,6 +51,13 @@ using MeasuredCurve = std::vector<std::pair<double, double>>;
 /// Standard deviations, as shares: of a lamp's output (NaN = as the rig file allows); of its light at a place beside.
 struct LightError {
   double output = 0, local = 0;
+  double least_local = 0;  ///< where that is known best
+};
+
+/// Light of a fixture that does not move at a point, at full level, as a calibration found it.
+struct KnownLight {
+  std::size_t point = 0, fixture = 0;
+  double lux = 0, standard_error_lx = 0;
 };
 
 struct Personality;

@@ -21,6 +21,8 @@ struct Rig {
   std::string name;
   std::string calibrated;     ///< when the calibration that is applied over the file was made; empty = none is
   std::string calibrated_on;  ///< the simulated rig that it was measured on; empty = the real one
+  std::vector<KnownLight> known_lights;  ///< by that calibration; in place of what is traced
+  std::uint64_t known_lights_of = 0;     ///< RigVersion::light of the rig that they are of, without them
   SceneSpec scene;
   std::vector<Luminaire> luminaires;
   std::vector<Bus> buses;

@@ -191,8 +191,30 @@ Result<TransportMatrix> light_of(const RayScene& scene, std::span<const Receiver
   return Request{stage, scene, receivers, emitters, std::move(wanted), options}.light(used);
 }
 
-Result<TransportMatrix> compute_transport(const Rig& rig, const RayScene& rays, const ComputeOptions& options,
-                                          const Look& look, ModelUsed* used, const KeptTransport* before) {
+namespace {
+
+/// A known light is as it was measured: traced light is scaled to it, at the point and at a luxmeter there.
+void put_known_lights(const Rig& rig, TransportMatrix& light) {
+  /// What differs by more is not traced well enough to be scaled.
+  constexpr double kMostScale = 5;
+  for (const KnownLight& known : rig.known_lights) {
+    const auto f = static_cast<Eigen::Index>(known.fixture);
+    std::vector<Eigen::Index> rows{static_cast<Eigen::Index>(known.point)};
+    for (std::size_t m = 0; m < rig.luxmeters.size(); ++m)
+      if (rig.luxmeters[m].point == known.point) rows.push_back(static_cast<Eigen::Index>(rig.points.size() + m));
+    for (const Eigen::Index row : rows) {
+      const double scale = known.lux / light.lux_per_level(row, f);
+      if (!(scale > 1 / kMostScale && scale < kMostScale)) continue;
+      light.lux_per_level(row, f) *= scale;
+      light.direct_lux_per_level(row, f) *= scale;
+      for (Eigen::MatrixXd& replicate : light.replicates) replicate(row, f) *= scale;
+      for (Eigen::MatrixXd& primary : light.rgb_per_level) primary(row, f) *= scale;
+    }
+  }
+}
+
+Result<TransportMatrix> traced(const Rig& rig, const RayScene& rays, const ComputeOptions& options, const Look& look,
+                               ModelUsed* used, const KeptTransport* before) {
   const Stage stage(options.watch.without_stop(), options.stage, "starting", limit_of(options));
   const auto receivers = receivers_of(rig);
   const auto emitters = all_emitters_of(rig, look.joints);
@@ -237,6 +259,15 @@ Result<TransportMatrix> compute_transport(const Rig& rig, const RayScene& rays, 
   }
   if (used) *used = std::move(by);
   return joined;
+}
+
+}  // namespace
+
+Result<TransportMatrix> compute_transport(const Rig& rig, const RayScene& rays, const ComputeOptions& options,
+                                          const Look& look, ModelUsed* used, const KeptTransport* before) {
+  auto light = traced(rig, rays, options, look, used, before);
+  if (light) put_known_lights(rig, *light);
+  return light;
 }
 
 }  // namespace luxrig

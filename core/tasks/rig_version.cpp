@@ -97,6 +97,11 @@ std::uint64_t light_of(const Rig& rig, const Scene& scene) {
     print.add(point.position_world_m);
     print.add(point.normal_world);
   }
+  for (const KnownLight& light : rig.known_lights) {
+    print.add(std::uint64_t{light.point});
+    print.add(std::uint64_t{light.fixture});
+    print.add(light.lux);
+  }
   if (rig.daylight) {
     print.add(static_cast<std::uint64_t>(rig.daylight->sky));
     print.add(static_cast<std::uint64_t>(rig.daylight->general_type));

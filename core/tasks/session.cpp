@@ -9,9 +9,26 @@
 #include "core/tasks/any_aim.h"
 #include "core/tasks/rig_notes/rig_notes.h"
 #include "core/tasks/rig_transport.h"
+#include "core/tasks/rig_version.h"
 #include "core/tasks/scene_builder.h"
 
 namespace luxrig {
+
+namespace {
+
+/// What was measured at points holds for this scene, these points and lamps alone.
+void drop_outdated_lights(Session& session) {
+  if (session.rig.known_lights.empty()) return;
+  std::vector<KnownLight> lights = std::exchange(session.rig.known_lights, {});
+  if (version_of(session.rig, session.scene).light == session.rig.known_lights_of)
+    session.rig.known_lights = std::move(lights);
+  else
+    session.rig.notes.push_back({session.rig.file.parent_path() / "calibration.json", 0, 0,
+                                 "scene, points, luxmeters or lamps have changed since it was made",
+                                 "what it found at points is not used any more: calibrate again"});
+}
+
+}  // namespace
 
 Checked<Session> session_of(Rig rig) {
   if (auto problems = lamps_in_points(rig); !problems.empty()) return tl::unexpected(std::move(problems));
@@ -19,6 +36,7 @@ Checked<Session> session_of(Rig rig) {
   if (!scene) return tl::unexpected(std::move(scene.error()));
   Session session{std::move(rig), std::move(*scene), nullptr};
   session.rays = std::make_unique<RayScene>(session.scene);
+  drop_outdated_lights(session);
   const bool places = std::any_of(session.rig.tasks.begin(), session.rig.tasks.end(),
                                   [](const Task& task) { return task.places_lights(); });
   if (places || !session.rig.mounting.surfaces.empty()) {
@@ -67,7 +85,7 @@ std::vector<PlannedPoint> predicted_points(const Rig& rig, const TransportMatrix
 
 namespace {
 
-/// How sure a calibration is of each fixture.
+/// How sure a calibration is of each fixture, and of its light at each point.
 void add_spreads(const Rig& rig, LightModel& model) {
   const bool calibrated = std::any_of(rig.fixtures.begin(), rig.fixtures.end(),
                                       [](const Fixture& fixture) { return fixture.known_to.has_value(); });
@@ -79,6 +97,17 @@ void add_spreads(const Rig& rig, LightModel& model) {
       model.gain_sd[static_cast<Eigen::Index>(f)] = known_to->output;
       model.local_sd[static_cast<Eigen::Index>(f)] = known_to->local;
     }
+  if (rig.known_lights.empty()) return;
+  model.point_known_error.setZero(static_cast<Eigen::Index>(rig.points.size()), model.gain_sd.size());
+  for (const KnownLight& light : rig.known_lights) {
+    const auto& known_to = rig.fixtures[light.fixture].known_to;
+    if (!known_to || !std::isfinite(known_to->output)) continue;
+    const auto f = static_cast<Eigen::Index>(light.fixture);
+    model.local_sd[f] = known_to->least_local;
+    const double alike_lx = light.lux * std::hypot(known_to->output, known_to->least_local);
+    model.point_known_error(static_cast<Eigen::Index>(light.point), f) =
+        std::sqrt(std::max(0.0, light.standard_error_lx * light.standard_error_lx - alike_lx * alike_lx));
+  }
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include "core/calibration/open_run.h"
 #include "core/calibration/rig_light.h"
 #include "core/output/dimming.h"
+#include "core/tasks/rig_version.h"
 #include "tools/command_line/installed.h"
 #include "tools/luxrig/calibrate/by_camera.h"
 #include "tools/luxrig/calibrate/by_hand.h"
@@ -136,6 +137,13 @@ Result<std::vector<MeasuredHead>> by_heads(const Measuring& measuring) {
   if (const std::string dim = limited_light_of(rig); some_refused && !dim.empty())
     fmt::print("Heads are turned {}. That may be too dim to find them.\n", dim);
   return heads;
+}
+
+/// 0 = the rig as found cannot be built: what is known of its points will not be used.
+std::uint64_t version_as_found(const Session& stated, const Calibration& found) {
+  auto rig = calibrated(stated.rig, found, "what was found");
+  const auto session = rig ? session_of(std::move(*rig)) : tl::unexpected(rig.error());
+  return session ? version_of(session->rig, session->scene).light : 0;
 }
 
 std::string world_of(const HttpPeer& sim_control) {
@@ -310,6 +318,7 @@ int run_calibrate(const CalibrateArguments& arguments) {
   if (earlier) keep_first_outputs(*earlier, found);
   put_heads(rig, heads, earlier ? &*earlier : nullptr, found);
   put_cameras(rig, views, measuring.seen, *light, earlier ? &*earlier : nullptr, found);
+  found.as_found = version_as_found(*session, found);
   if (auto written = write_file(file, to_json(found)); !written) return report(written.error());
   CalibrationReport told = report_of(with_places, before, *light, std::move(found), kLevelOfUse, measuring.no_points());
   if (meters) told.by.emplace_back("luxmeters that hang");
