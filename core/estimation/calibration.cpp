@@ -376,13 +376,16 @@ Checked<Rig> calibrated(Rig rig, const Calibration& calibration, const std::stri
   };
   if (calibration.rig != rig.name)
     problem(fmt::format("it is of rig \"{}\", this is \"{}\"", calibration.rig, rig.name), kRemedy);
-  for (const CalibratedFixture& found : calibration.fixtures) {
-    const auto fixture = std::find_if(rig.fixtures.begin(), rig.fixtures.end(),
-                                      [&](const Fixture& each) { return each.name == found.name; });
-    if (fixture == rig.fixtures.end()) {
+  for (const CalibratedFixture& found : calibration.fixtures)
+    if (std::none_of(rig.fixtures.begin(), rig.fixtures.end(),
+                     [&](const Fixture& each) { return each.name == found.name; }))
       problem(fmt::format("the rig has no fixture \"{}\"", found.name), kRemedy);
-      continue;
-    }
+  // In the rig's order, so that the rig is the same in whichever order it was found.
+  for (auto fixture = rig.fixtures.begin(); fixture != rig.fixtures.end(); ++fixture) {
+    const auto of_fixture = std::find_if(calibration.fixtures.begin(), calibration.fixtures.end(),
+                                         [&](const CalibratedFixture& each) { return each.name == fixture->name; });
+    if (of_fixture == calibration.fixtures.end()) continue;
+    const CalibratedFixture& found = *of_fixture;
     fixture->world_from_mount = displaced(fixture->world_from_mount, found.offset_m, found.turn_deg * (kPi / 180));
     if (found.head && fixture->moves) turn_as_found(*found.head, *fixture);
     fixture->measured_curve = found.curve;
