@@ -82,7 +82,7 @@ std::vector<std::uint32_t> order_of(const std::vector<CellKey>& keys) {
   std::vector<std::uint32_t> order(keys.size()), sorted(keys.size());
   for (std::size_t i = 0; i < keys.size(); ++i) order[i] = static_cast<std::uint32_t>(i);
   const CellKey highest = keys.empty() ? 0 : *std::max_element(keys.begin(), keys.end());
-  for (int shift = 0; highest >> shift != 0; shift += kDigitBits) {
+  for (int shift = 0; shift < 64 && highest >> shift != 0; shift += kDigitBits) {
     std::vector<std::size_t> place(kDigits + 1, 0);
     const auto digit = [&](std::uint32_t i) { return keys[i] >> shift & (kDigits - 1); };
     for (const std::uint32_t i : order) ++place[digit(i) + 1];

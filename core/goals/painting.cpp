@@ -10,7 +10,7 @@ namespace {
 constexpr float kUnpainted = std::numeric_limits<float>::quiet_NaN();
 
 bool sound(const Stroke& stroke) {
-  return !stroke.path.empty() && std::isfinite(stroke.lux) && stroke.lux >= 0 && std::isfinite(stroke.radius_m) &&
+  return !stroke.path.empty() && stroke.lux >= 0 && stroke.lux <= kMaxStroke_lx && std::isfinite(stroke.radius_m) &&
          stroke.radius_m >= 0 && stroke.falloff >= 0 && stroke.falloff <= 1;
 }
 

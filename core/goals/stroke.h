@@ -21,10 +21,13 @@ enum class StrokeKind {
   return kNames[static_cast<int>(kind)];
 }
 
+/// Ten times what the sun gives.
+inline constexpr double kMaxStroke_lx = 1e6;
+
 struct Stroke {
   StrokeKind kind = StrokeKind::bucket;
   std::vector<SurfacePlace> path;  ///< of a brush; otherwise one place
-  double lux = 0;                  ///< finite, ≥ 0; an eraser has none
+  double lux = 0;                  ///< 0…kMaxStroke_lx; an eraser has none
   double radius_m = 0;             ///< of a brush; 0 = only the patches that the path meets
   /// Share of the radius, 0…1, over which the stroke fades into what is painted below it. Where nothing is, it has its
   /// own lux up to the edge: there is nothing to fade into, and 0 lx would be a wish for darkness.
