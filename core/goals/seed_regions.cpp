@@ -5,22 +5,19 @@
 namespace luxrig {
 
 // Dijkstra's method on whole numbers, with a queue for each distance (Dial 1969).
-SeedRegions::SeedRegions(const SurfacePatches& surface)
-    : surface_(surface), owners_(surface.size(), kNone), distances_(surface.size(), kNone) {
+SeedRegions::SeedRegions(const SurfacePatches& surface) : surface_(surface), claims_(surface.size()) {
   std::uint32_t longest = 0;
   for (const PatchLink& link : surface.links) longest = std::max(longest, link.length);
   queues_.resize(longest + 1);
 }
 
 void SeedRegions::offer(const Label& label) {
-  std::uint32_t& distance = distances_[label.patch];
-  std::uint32_t& owner = owners_[label.patch];
-  const bool better =
-      owner == kNone || label.distance < distance || (label.distance == distance && label.owner > owner);
+  Claim& best = claims_[label.patch];
+  const Claim& claim = label.claim;
+  const bool better = claim.distance < best.distance || (claim.distance == best.distance && claim.owner > best.owner);
   if (!better) return;
-  distance = label.distance;
-  owner = label.owner;
-  queues_[label.distance % queues_.size()].push_back(label);
+  best = claim;
+  queues_[claim.distance % queues_.size()].push_back(label);
   ++queued_;
 }
 
@@ -29,23 +26,23 @@ void SeedRegions::spread(const std::vector<Label>& sources, std::vector<std::uin
   std::vector<Label> now;
   std::size_t offered = 0;
   for (std::uint32_t distance = 0; queued_ > 0 || offered < sources.size(); ++distance) {
-    if (queued_ == 0) distance = sources[offered].distance;
-    while (offered < sources.size() && sources[offered].distance == distance) offer(sources[offered++]);
+    if (queued_ == 0) distance = sources[offered].claim.distance;
+    while (offered < sources.size() && sources[offered].claim.distance == distance) offer(sources[offered++]);
     now.clear();
     now.swap(queues_[distance % queues_.size()]);
     queued_ -= now.size();
     for (const Label& label : now) {
-      if (owners_[label.patch] != label.owner || distances_[label.patch] != label.distance) continue;
+      if (claims_[label.patch] != label.claim) continue;
       changed.push_back(label.patch);
       for (const PatchLink& link : surface_.links_of(label.patch))
-        offer({link.patch, label.distance + link.length, label.owner});
+        offer({link.patch, {distance + link.length, label.claim.owner}});
     }
   }
 }
 
 void SeedRegions::add(std::uint32_t seed, std::uint32_t patch, std::vector<std::uint32_t>& changed) {
   seeds_.push_back({seed, patch});
-  spread({{patch, 0, seed}}, changed);
+  spread({{patch, {0, seed}}}, changed);
 }
 
 // What the seed had is free: its neighbours spread into it, and so do further seeds that lie in it.
@@ -54,8 +51,8 @@ void SeedRegions::remove(std::uint32_t seed, std::vector<std::uint32_t>& changed
   if (which == seeds_.end()) return;
   std::vector<std::uint32_t> freed;
   const auto free = [&](std::uint32_t patch) {
-    if (owners_[patch] != seed) return;
-    owners_[patch] = kNone;
+    if (claims_[patch].owner != seed) return;
+    claims_[patch] = {};
     freed.push_back(patch);
   };
   free((*which)[1]);
@@ -66,12 +63,13 @@ void SeedRegions::remove(std::uint32_t seed, std::vector<std::uint32_t>& changed
 
   std::vector<Label> sources;
   for (const auto& [other, patch] : seeds_)
-    if (owners_[patch] == kNone) sources.push_back({patch, 0, other});
+    if (owner(patch) == kNone) sources.push_back({patch, {0, other}});
   for (const std::uint32_t patch : freed)
     for (const PatchLink& link : surface_.links_of(patch))
-      if (owners_[link.patch] != kNone)
-        sources.push_back({patch, distances_[link.patch] + link.length, owners_[link.patch]});
-  std::sort(sources.begin(), sources.end(), [](const Label& a, const Label& b) { return a.distance < b.distance; });
+      if (const Claim& claim = claims_[link.patch]; claim.owner != kNone)
+        sources.push_back({patch, {claim.distance + link.length, claim.owner}});
+  std::sort(sources.begin(), sources.end(),
+            [](const Label& a, const Label& b) { return a.claim.distance < b.claim.distance; });
   spread(sources, changed);
 }
 

@@ -17,17 +17,22 @@ class SeedRegions {
   /// Time is linear in the seed's region.
   void add(std::uint32_t seed, std::uint32_t patch, std::vector<std::uint32_t>& changed);
   void remove(std::uint32_t seed, std::vector<std::uint32_t>& changed);
-  [[nodiscard]] std::uint32_t owner(std::uint32_t patch) const { return owners_[patch]; }
+  [[nodiscard]] std::uint32_t owner(std::uint32_t patch) const { return claims_[patch].owner; }
 
  private:
+  struct Claim {
+    std::uint32_t distance = kNone, owner = kNone;
+    bool operator==(const Claim&) const = default;
+  };
   struct Label {
-    std::uint32_t patch, distance, owner;
+    std::uint32_t patch;
+    Claim claim;
   };
   void offer(const Label& label);
   void spread(const std::vector<Label>& sources, std::vector<std::uint32_t>& changed);
 
   const SurfacePatches& surface_;
-  std::vector<std::uint32_t> owners_, distances_;
+  std::vector<Claim> claims_;                        ///< on each patch, the best so far
   std::vector<std::array<std::uint32_t, 2>> seeds_;  ///< seed and its patch
   /// Labels by distance, modulo the number of queues, which is above the longest link.
   std::vector<std::vector<Label>> queues_;
