@@ -24,6 +24,7 @@ constexpr Suite kSuites[] = {
     {"nnls", "non-negative least squares: cold, warm, one column exchanged, under limits", bench_nnls},
     {"placement", "known lights found again; every scene by every method, with bounds", bench_placement},
     {"highlight", "an object's relief: shadow edges; lights by every method; their number; stability", bench_highlight},
+    {"goals", "painting light on surfaces: patches and groups of up to 1e7 triangles, strokes on 1e6", bench_goals},
     {"buses", "output cycle under a solve; loads: 247 Modbus units, 64 universes, 64 axes", bench_buses},
     {"loop", "a rig whose truth is not its file's: calibrated, then held", bench_loop},
     {"hold", "a held show: faults that no device reports, quiet hours, lamps that light each other's meters",

@@ -25,7 +25,7 @@ struct BenchOptions {
   int first_seed = 1;                         ///< placement: first of them, so that a long run can be split
   bool bounds = true;                         ///< placement scenes: with certified bounds, which take longest
   std::optional<double> seconds;              ///< buses: length of each load, instead of its own
-  std::filesystem::path data_folder;          ///< placement, highlight: files to read
+  std::filesystem::path data_folder;          ///< placement, highlight, goals: files to read
   std::string only;  ///< transport, nnls, highlight, buses, faults: only cases whose name begins so; analytic: only
                      ///< such families; placement: the part of this name
 };

@@ -45,7 +45,8 @@ int main(int argc, char** argv) {
   command.add_option("--seconds", bench.seconds, "buses: how long each load runs")->check(CLI::Range(1.0, 86400.0));
   command
       .add_option("--data", bench.data_folder,
-                  "folder of files; placement: office-scan.obj (tools/bench/data), apartment.glb; highlight: "
+                  "folder of files; placement: office-scan.obj (tools/bench/data), apartment.glb, which goals reads "
+                  "too; highlight: "
                   "venus-bust.glb, skull.obj, teapot.glb, egyptian-cat.glb, chess-board.glb")
       ->check(offers_folders());
   command.add_option("--only", bench.only, "only cases (analytic: families) whose name begins so");

@@ -67,6 +67,11 @@ namespace luxrig {
 /// is turned, scaled, decimated or noisy. On the generated targets; on five more with a data folder.
 [[nodiscard]] std::vector<BenchRow> bench_highlight(const BenchOptions& options);
 
+/// Painting light on surfaces. Patches and groups of a colonnade of 10⁴ to 10⁷ triangles (quick: 10⁶), strokes on a
+/// million; the apartment with a data folder. error: of the area of all patches. seconds: by the wall; of strokes, the
+/// 95th percentile.
+[[nodiscard]] std::vector<BenchRow> bench_goals(const BenchOptions& options);
+
 /// Four sACN universes at 44 Hz to a sink on loopback for 40 s (6 s with quick), with path tracing on all cores. Prints
 /// the histogram of the intervals by the kernel's arrival stamps. error: p99 deviation over the period. Then the loads
 /// below.

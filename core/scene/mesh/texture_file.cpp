@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <csetjmp>
+#include <cstdio>  // jpeglib.h needs it
 #include <cstring>
 
 #include "core/scene/texture.h"

@@ -4,22 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 
+#include "tools/bench/peak_memory.h"
 #include "tools/bench/rooms/room_plan.h"
 
 namespace luxrig {
 namespace {
-
-/// Largest resident set of this process so far, in GiB; from the kernel.
-double peak_gib() {
-  std::ifstream in("/proc/self/status");
-  for (std::string line; std::getline(in, line);)
-    if (line.rfind("VmHWM:", 0) == 0) return std::stod(line.substr(6)) / (1024.0 * 1024.0);
-  return 0;
-}
-/// Resets the peak. Where the kernel does not allow it, peak_gib() covers the whole process.
-void forget_peak() { std::ofstream("/proc/self/clear_refs") << "5"; }
 
 /// Time and accuracy of the matrix that placement searches in.
 void add_matrix(const TransportCase& one, const BenchOptions& options, std::vector<BenchRow>& rows) {
