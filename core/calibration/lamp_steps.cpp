@@ -179,6 +179,7 @@ LampCurve curve_of(std::span<const ReadAtLevel> brightest_first) {
     shares.push_back({read.level, log_share, std::max(error, kSmallestError)});
     if (error > kMostCurveError) continue;
     curve.error = std::max(curve.error, error);
+    if (!(curve.error_in_use > 0)) curve.error_in_use = error;  // the brightest of them
     curve.known_from = read.level;
   }
   if (!(curve.error > 0)) return {};

@@ -56,6 +56,7 @@ struct ReadAtLevel {
 struct LampCurve {
   MeasuredCurve of_level{};  ///< share of full light by level; empty = not measured, the maker's holds
   double error = 0;          ///< standard error of a share, relative, from `known_from` on
+  double error_in_use = 0;   ///< of one near 0.4, where lamps mostly are
   double known_from = 0;     ///< below this level readings tell less: there it is what the dimmer's law makes of them
 };
 

@@ -312,7 +312,7 @@ Calibration calibration_of(const Session& session, const RigLight& light, std::s
     found.turn_deg = deg(known.mount(f));
     found.turn_error_deg = deg(known.mount_standard_error(f));
     found.curve = curves[f].of_level;
-    found.curve_error = curves[f].error;
+    found.curve_error = curves[f].error_in_use;
     calibration.fixtures.push_back(std::move(found));
   }
   for (std::size_t m = 0; m < session.scene.materials.size(); ++m)
