@@ -14,7 +14,7 @@ constexpr double kObjectWide_deg = 10;
 /// Middle of the finest level's band [cycles/pixel]; each next level has half.
 constexpr double kBandMiddle = 0.2;
 /// Contrast that counts as a half where sensitivity is highest.
-constexpr double kHalfContrast = 0.02;
+constexpr double kHalfContrast = 0.06;
 /// Contrast that counts as a half at the outline.
 constexpr float kHalfOutline = 0.1f;
 
@@ -140,7 +140,7 @@ void SeenContrast::add_levels(View& view) const {
   }
 }
 
-SeenScore SeenContrast::score(std::span<const float> lux) const {
+SeenScore SeenContrast::score(std::span<const float> lux, double darkest_lx) const {
   LUXRIG_CHECK(lux.size() == samples_.size(), "{} for {} samples", lux.size(), samples_.size());
   SeenScore score;
   std::vector<float> response(lux.size());  // first the luminance, times π
@@ -150,7 +150,7 @@ SeenScore SeenContrast::score(std::span<const float> lux) const {
     sum += of_object_[i] ? response[i] : 0;
   }
   score.mean_lx = reflectance_sum_ > 0 ? sum / reflectance_sum_ : 0;
-  const double mean = std::max(sum, wishes_.darkest_lx * reflectance_sum_) / object_samples_;
+  const double mean = std::max(sum, darkest_lx * reflectance_sum_) / object_samples_;
   if (mean > 0) {
     const auto over_mean = static_cast<float>(1 / mean);
     double lit = 0;

@@ -27,12 +27,11 @@ namespace luxrig {
 /// black is 1 %, four stops down. Two stops down a shadow still reads as lit.
 inline constexpr double kBurntOverMean = 1 / 0.18, kCrushedOverMean = 1.0 / 16, kLitOverMean = 1.0 / 4;
 
-/// Weight of each term; all of them are 0…1.
+/// Weight of each term; all of them are 0…1. Relief and form are around 0.1 to 0.25 in usual light, a lit share 0.5 to 1.
 struct SeenWishes {
-  double fine_weight = 1, form_weight = 1, lit_weight = 0.5, edge_weight = 0.1;
-  double clipped_weight = 2;  ///< of the burnt and crushed share beyond the stated one
+  double fine_weight = 6, form_weight = 6, lit_weight = 1, edge_weight = 0.1;
+  double clipped_weight = 1;  ///< of the burnt and crushed share beyond the stated one
   double max_clipped = 0.02;  ///< of the object's seen samples
-  double darkest_lx = 0;      ///< an eye or a camera does not adapt to less on the object (as illuminance)
 };
 
 struct SeenScore {
@@ -55,10 +54,10 @@ class SeenContrast {
   /// All views' samples, in order.
   [[nodiscard]] std::span<const OrientedPoint> samples() const { return samples_; }
   [[nodiscard]] const SeenWishes& wishes() const { return wishes_; }
-  void set_darkest_lx(double lux) { wishes_.darkest_lx = lux; }
 
-  /// lux   at each sample, of all light, direct and reflected; finite and ≥ 0
-  [[nodiscard]] SeenScore score(std::span<const float> lux) const;
+  /// lux         at each sample, of all light, direct and reflected; finite and ≥ 0
+  /// darkest_lx  an eye or a camera does not adapt to a darker object (mean illuminance)
+  [[nodiscard]] SeenScore score(std::span<const float> lux, double darkest_lx = 0) const;
 
  private:
   /// One level of a view's pyramid: constants of the object's form.

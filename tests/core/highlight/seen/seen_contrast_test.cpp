@@ -14,8 +14,8 @@ using namespace seen_fixture;
 
 const Vec3 kEyeAbove{0, 0, 3};
 
-SeenContrast contrast_of_scene(const RayScene& object, const Vec3& eye_m, const SeenWishes& wishes = {}) {
-  return SeenContrast({view_on(object, object, eye_m)}, wishes);
+SeenContrast contrast_of_scene(const RayScene& object, const Vec3& eye_m) {
+  return SeenContrast({view_on(object, object, eye_m)}, {});
 }
 
 Scene flat_square() {
@@ -96,14 +96,12 @@ TEST(SeenContrast, ScalingAllLightsChangesNothing) {
 // An eye that does not adapt any further sees less and less.
 TEST(SeenContrast, BelowTheDarkestAdaptationLessIsSeen) {
   const RayScene object(ridges(6, 0.02));
-  SeenWishes wishes;
-  wishes.darkest_lx = 1;
-  const SeenContrast seen = contrast_of_scene(object, kEyeAbove, wishes);
+  const SeenContrast seen = contrast_of_scene(object, kEyeAbove);
   double last = 2;
   for (const float factor : {1.0f, 0.1f, 0.01f, 0.0f}) {
     std::vector<float> lux = distant_lux(object, seen.samples(), at_height(30));
     for (float& lx : lux) lx *= factor;
-    const SeenScore score = seen.score(lux);
+    const SeenScore score = seen.score(lux, 1);
     EXPECT_LT(score.fine + score.form, last) << factor;
     last = score.fine + score.form;
   }
