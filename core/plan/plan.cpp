@@ -73,6 +73,10 @@ OrderedJson json_of(const PlannedTask& task) {
     put(json, "before_local_contrast", task.relief->before_local_contrast_lx);
     put(json, "object_lux", task.relief->object_lux);
     put(json, "key_to_fill", task.relief->key_to_fill);
+    put(json, "seen", task.relief->seen);
+    put(json, "before_seen", task.relief->before_seen);
+    put(json, "lit_share", task.relief->lit_share);
+    put(json, "clipped_share", task.relief->clipped_share);
   }
   json["iterations"] = task.iterations;
   put(json, "seconds", task.seconds);

@@ -52,6 +52,8 @@ struct PlannedRelief {
   std::optional<double> before_local_contrast_lx{}, before_coverage{},
       before_relative_contrast{};  ///< kind "aim": values of the look before
   std::optional<double> key_to_fill{};
+  std::optional<double> seen{}, before_seen{};         ///< SeenScore::objective, if that was the task's
+  std::optional<double> lit_share{}, clipped_share{};  ///< of what is seen: lit; burnt or crushed
 };
 
 /// Where a lamp that a person carries should be held.
@@ -165,7 +167,8 @@ struct HungPlan {
 ///   a task     "watts", "switches_proven" if false
 ///   placement  "fixtures" (like "lights"), "numbers": [{"lights", "normalised_error", "local_contrast"}],
 ///              "lower_bound", "lower_bound_of_number", "front": [{"max_watts", "watts", "normalised_error"}]
-///   relief     "local_contrast", "relative_contrast", "coverage", the same with "before_", "object_lux", "key_to_fill"
+///   relief     "local_contrast", "relative_contrast", "coverage", the same with "before_", "object_lux", "key_to_fill";
+///              "seen", "before_seen", "lit_share", "clipped_share" if that was the objective
 ///   directions "directions": [{"direction", "azimuth_deg", "elevation_deg", "position"}], "numbers" with
 ///              "relative_contrast"
 /// Numbers are finite, or the key is absent.

@@ -46,6 +46,10 @@ PlannedTask task_of(const JsonReader& reader, const Json& json, const std::strin
     relief.before_coverage = reader.optional_number(json, path, "before_coverage");
     relief.object_lux = reader.number(json, path, "object_lux", false);
     relief.key_to_fill = reader.optional_number(json, path, "key_to_fill");
+    relief.seen = reader.optional_number(json, path, "seen");
+    relief.before_seen = reader.optional_number(json, path, "before_seen");
+    relief.lit_share = reader.optional_number(json, path, "lit_share");
+    relief.clipped_share = reader.optional_number(json, path, "clipped_share");
     task.relief = relief;
   }
   task.iterations = reader.count<int>(json, path, "iterations");

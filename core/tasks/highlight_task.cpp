@@ -8,13 +8,17 @@
 #include <limits>
 
 #include "core/highlight/lights/judged_lights.h"
+#include "core/highlight/seen/seen_selection.h"
 #include "core/photometry/beam.h"
 #include "core/scene/object_scene.h"
+#include "core/tasks/seen_task.h"
 
 namespace luxrig {
 namespace {
 
 constexpr double kBeamShare = 0.9;  // share of the flux inside the beam (thesis §6.5)
+/// Of each kind, where lights are chosen by what is seen; and of these, to find how much the room reflects.
+constexpr std::size_t kSeenCandidates = 200, kReflectionSamples = 6;
 
 /// The surfaces of [mounting] for lights, or nested boxes around the object.
 Result<LightDomain> domain_of(const ReliefSurroundings& around, const StudiedObject& object, const Mounting& mounting) {
@@ -69,6 +73,64 @@ PotentialLights hangable_lights(const PotentialLights& all, const Mounting& moun
   return kept;
 }
 
+HangingHead new_head(const Rig& rig, const Luminaire& luminaire, const Vec3& place_world_m, const Vec3& direction) {
+  HangingHead head;
+  head.world_from_mount.translation_m = place_world_m;
+  head.range = {-kPi, kPi, -kPi, kPi};  // it is hung in any direction: no joint stops it
+  head.present = pan_tilt_towards(head.world_from_mount, direction, head.range, {}).value_or(Joints{});
+  head.zoom = {{luminaire.intensity}};
+  head.max_level = rig.limits.max_level;
+  head.watts = luminaire.watts.value_or(0);
+  return head;
+}
+
+/// Every n-th of so many that at most `most` are left.
+template <class List, class Take>
+void take_evenly(const List& list, std::size_t most, const Take& take) {
+  const std::size_t count = std::min(most, list.size());
+  for (std::size_t k = 0; k < count; ++k) take(list[k * list.size() / count]);
+}
+
+/// Places and first aims, by the coarse picture: among those of most contrast, and places all over the domain with the
+/// beam on the object's middle.
+Result<std::vector<JudgedLight>> lights_by_what_is_seen(const ReliefSurroundings& around, const StudiedObject& object,
+                                                        const Task& task, const JudgedLights& judge,
+                                                        std::span<const Vec3> places, std::span<const double> fixed_lux,
+                                                        const ComputeOptions& options) {
+  const HighlightSpec& spec = task.highlight;
+  const Luminaire& luminaire = around.rig.luminaires[spec.luminaire];
+  const auto seen = seen_object(around, object, spec.relief, fixed_lux, options);
+  if (!seen) return tl::unexpected(seen.error());
+  const Vec3 middle_world_m = object.study.surface.centroid_world_m();
+  std::vector<SeenCandidate> candidates;
+  std::vector<HangingHead> for_reflection;
+  take_evenly(judge.candidates(), kSeenCandidates, [&](const JudgedLight& one) {
+    candidates.push_back({one.position_world_m, one.direction});
+  });
+  take_evenly(places, kSeenCandidates, [&](const Vec3& place_m) {
+    if ((middle_world_m - place_m).norm() > 0) candidates.push_back({place_m, (middle_world_m - place_m).normalized()});
+  });
+  take_evenly(candidates, kReflectionSamples, [&](const SeenCandidate& one) {
+    for_reflection.push_back(new_head(around.rig, luminaire, one.position_world_m, one.direction));
+  });
+  const auto reflected_lx = reflected_lx_of(around, object, for_reflection, options);
+  if (!reflected_lx) return tl::unexpected(reflected_lx.error());
+  SeenSelectionOptions how;
+  how.run() = options.of_part();
+  for (const double one : *reflected_lx) how.reflected_lx += one / static_cast<double>(reflected_lx->size());
+  const SeenSelection selection(*seen->quick, around.rays, std::move(candidates), *luminaire.intensity,
+                                seen->quick_fixed_lux, how);
+  const std::vector<SeenChoice> by_number = selection.up_to(spec.lights.value_or(spec.max_lights));
+  if (by_number.empty()) return refusal("no light that may hang somewhere lights what is seen of the object");
+  std::vector<double> objective;
+  for (const SeenChoice& choice : by_number) objective.push_back(choice.score.objective);
+  const SeenChoice& chosen = spec.lights ? by_number.back() : by_number[number_at_peak(objective)];
+  std::vector<JudgedLight> lights;
+  for (const std::size_t c : chosen.candidates)
+    lights.push_back({selection.candidates()[c].position_world_m, selection.candidates()[c].direction, 0, {}});
+  return lights;
+}
+
 }  // namespace
 
 Result<PlacedReliefLights> find_relief_lights(const ReliefSurroundings& around, const StudiedObject& object,
@@ -118,7 +180,19 @@ Result<PlacedReliefLights> find_relief_lights(const ReliefSurroundings& around, 
   if (!judge) return refuse(judge.error());
   PlacedReliefLights found;
   JudgedLightSet chosen;
-  if (spec.lights) {
+  std::optional<std::vector<double>> fixed;
+  const auto light_that_stays = [&]() -> Result<void> {
+    auto lux = staying_lux(around, object, options);
+    if (!lux) return tl::unexpected(lux.error());
+    fixed = std::move(*lux);
+    return {};
+  };
+  if (spec.relief.seen) {
+    if (auto known = light_that_stays(); !known) return refuse(known.error());
+    auto lights = lights_by_what_is_seen(around, object, task, *judge, places, *fixed, options);
+    if (!lights) return refuse(lights.error());
+    chosen.lights = std::move(*lights);
+  } else if (spec.lights) {
     auto lights = judge->lights(*spec.lights);
     if (!lights) return refuse(lights.error());
     chosen = std::move(*lights);
@@ -130,8 +204,8 @@ Result<PlacedReliefLights> find_relief_lights(const ReliefSurroundings& around, 
   }
 
   before->say("light that stays");
-  auto fixed = staying_lux(around, object, options);
-  if (!fixed) return refuse(fixed.error());
+  if (!fixed)
+    if (auto known = light_that_stays(); !known) return refuse(known.error());
   auto limits = limits_of(around, object, spec.relief, options);
   if (!limits) return refuse(limits.error());
   before.reset();
@@ -143,18 +217,13 @@ Result<PlacedReliefLights> find_relief_lights(const ReliefSurroundings& around, 
   wishes.max_watts = around.max_watts;
   wishes.coverage_weight = spec.relief.coverage_weight;
   wishes.travel_weight = 0;
-  wishes.fixed_lux = std::move(*fixed);
   std::vector<HangingHead> heads;
-  for (const JudgedLight& light : chosen.lights) {
-    HangingHead head;
-    head.world_from_mount.translation_m = light.position_world_m;
-    head.range = {-kPi, kPi, -kPi, kPi};  // it is hung in any direction: no joint stops it
-    head.present = pan_tilt_towards(head.world_from_mount, light.direction, head.range, {}).value_or(Joints{});
-    head.zoom = {{luminaire.intensity}};
-    head.max_level = around.rig.limits.max_level;
-    head.watts = luminaire.watts.value_or(0);
-    heads.push_back(std::move(head));
-  }
+  for (const JudgedLight& light : chosen.lights)
+    heads.push_back(new_head(around.rig, luminaire, light.position_world_m, light.direction));
+  if (spec.relief.seen)
+    if (auto added = wish_what_is_seen(around, object, spec.relief, *fixed, heads, wishes, options); !added)
+      return refuse(added.error());
+  wishes.fixed_lux = std::move(*fixed);
   AimOptions aim;
   aim.run() = options.of_part();
   aim.watch.stop = stage.stop();

@@ -16,6 +16,7 @@
 #include "core/rig/zoom.h"
 #include "core/scene/object_scene.h"
 #include "core/tasks/rig_transport.h"
+#include "core/tasks/seen_task.h"
 
 namespace luxrig {
 namespace {
@@ -232,7 +233,7 @@ Result<AimedFixtures> aim_fixtures(const ReliefSurroundings& around, const Studi
   wishes.limits = std::move(*limits);
   add_limits_of_eyes(around, spec, wishes.limits);
   wishes.max_object_lx = spec.relief.max_lx.value_or(std::numeric_limits<double>::infinity());
-  wishes.relative = spec.relief.relative;
+  wishes.measure = spec.relief.relative ? AimMeasure::relative : AimMeasure::lux;
   wishes.max_watts = around.max_watts;
   wishes.min_key_to_fill = spec.key ? spec.min_key_to_fill : 0;
   wishes.max_key_to_fill = spec.max_key_to_fill.value_or(std::numeric_limits<double>::infinity());
@@ -241,7 +242,6 @@ Result<AimedFixtures> aim_fixtures(const ReliefSurroundings& around, const Studi
   wishes.base_weight = spec.base_weight;
   wishes.travel_weight = spec.travel_weight;
   wishes.base_lx = spec.base_lx;
-  wishes.fixed_lux = std::move(*fixed);
 
   const KeepOutZones zones(around.rig);
   std::vector<HangingHead> heads;
@@ -254,6 +254,10 @@ Result<AimedFixtures> aim_fixtures(const ReliefSurroundings& around, const Studi
     heads.back().may_light = [&zones, head = spec.heads[k]](const Joints& at) { return !zones.met(head, at); };
     present.push_back({joints, 0, present_levels[k]});
   }
+  if (spec.relief.seen)
+    if (auto added = wish_what_is_seen(around, object, spec.relief, *fixed, heads, wishes, options); !added)
+      return in_words(added.error(), fmt::format("task \"{}\"", task.name));
+  wishes.fixed_lux = std::move(*fixed);
   AimOptions aim;
   aim.run() = options.of_part();
   aim.watch.stop = stage.stop();

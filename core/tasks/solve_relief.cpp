@@ -52,6 +52,12 @@ Result<void> TaskSolver::settle_relief(const Task& task, const ReliefSpec& spec,
     relief.before_coverage = before->coverage;
     relief.before_relative_contrast = before->relative_contrast;
   }
+  if (score.seen) {
+    relief.seen = score.seen->objective;
+    relief.lit_share = score.seen->lit_share;
+    relief.clipped_share = score.seen->burnt_share + score.seen->crushed_share;
+  }
+  if (before && before->seen) relief.before_seen = before->seen->objective;
   planned.name = task.name;
   planned.kind = name_of(task.kind);
   planned.relief = relief;

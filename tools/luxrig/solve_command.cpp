@@ -162,6 +162,10 @@ void print_relief(const Rig& rig, const PlannedTask& task) {
       percent(relief.coverage), was(relief.before_coverage, percent(relief.before_coverage.value_or(0))),
       relief.object_lux, relief.key_to_fill ? fmt::format(", key to fill {:.2f}", *relief.key_to_fill) : "",
       task.seconds);
+  if (relief.seen)
+    fmt::print("{}: seen {:.3f}{}, lit {} of what is seen, burnt or black {}\n", task.name, *relief.seen,
+               was(relief.before_seen, fmt::format("{:.3f}", relief.before_seen.value_or(0))),
+               percent(relief.lit_share.value_or(0)), percent(relief.clipped_share.value_or(0)));
   if (dark)
     fmt::print("{}: no comparison with before, since the task before it leaves these heads dark or off the object\n",
                task.name);

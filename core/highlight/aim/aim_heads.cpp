@@ -30,6 +30,20 @@ std::string complaint_of_head(const HangingHead& head) {
   if (!(head.pan_speed_rad_s > 0) || !(head.tilt_speed_rad_s > 0) || !(head.zoom_speed_rad_s > 0))
     return "its speeds are not positive";
   if (!(head.watts >= 0) || !std::isfinite(head.watts)) return "its power is not 0 or more";
+  if (!(head.reflected_lx >= 0) || !std::isfinite(head.reflected_lx)) return "its reflected light is not 0 lx or more";
+  return "";
+}
+
+std::string complaint_of_seen(const AimWishes& wishes) {
+  if ((wishes.measure == AimMeasure::seen) != (wishes.seen != nullptr))
+    return wishes.seen ? "what is seen is given, but does not count" : "what is seen of the object is not given";
+  if (wishes.seen_quick && !wishes.seen) return "a coarser picture is given, but no fine one";
+  const auto fits = [](const std::vector<float>& lux, const std::shared_ptr<const SeenContrast>& seen) {
+    return lux.empty() || (seen && lux.size() == seen->samples().size() &&
+                           std::ranges::all_of(lux, [](float one) { return one >= 0 && std::isfinite(one); }));
+  };
+  if (!fits(wishes.seen_fixed_lux, wishes.seen) || !fits(wishes.seen_quick_fixed_lux, wishes.seen_quick))
+    return "fixed light on what is seen must be 0 lx or more, one per sample";
   return "";
 }
 
@@ -99,6 +113,7 @@ AimJudge thinned_judge(const AimJudge& full, std::size_t n) {
     judge.sights.push_back(std::move(of_kept));
   }
   judge.limit_sights = full.limit_sights;
+  judge.seen_sights = full.seen_sights;
   return judge;
 }
 
@@ -169,6 +184,13 @@ std::vector<std::vector<double>> cones_of(const std::vector<HangingHead>& heads,
   return cones;
 }
 
+std::vector<HeadSight> seen_sights_of(const HeadAims::State& state, const RayScene& room, const SeenContrast& seen) {
+  std::vector<HeadSight> sights;
+  for (const HangingHead& head : state.heads)
+    sights.push_back(sight_of(room, head.world_from_mount.translation_m, seen.samples(), state.options.threads));
+  return sights;
+}
+
 }  // namespace
 
 AimColumn AimJudge::column(const HangingHead& head, std::size_t index, const HeadSetting& setting) const {
@@ -177,7 +199,13 @@ AimColumn AimJudge::column(const HangingHead& head, std::size_t index, const Hea
   std::vector<double> sample_lux(samples.points.size()), limit_lux(wishes.limits.size());
   lux_of_aim(sights[index], intensity, lamp, sample_lux);
   lux_of_aim(limit_sights[index], intensity, lamp, limit_lux);
-  return objective->column(std::move(sample_lux), std::move(limit_lux));
+  std::vector<float> seen_lux;
+  if (wishes.seen) {
+    std::vector<double> lux(wishes.seen->samples().size());
+    lux_of_aim(seen_sights[index], intensity, lamp, lux);
+    for (const double lx : lux) seen_lux.push_back(static_cast<float>(lx + head.reflected_lx));
+  }
+  return objective->column(std::move(sample_lux), std::move(limit_lux), std::move(seen_lux));
 }
 
 AimSum HeadAims::State::sum(const AimJudge& judge, std::span<const HeadSetting> settings) const {
@@ -207,6 +235,7 @@ Result<HeadAims> HeadAims::make(const ContrastSamples& samples, const FeatureClu
     if (const std::string text = complaint_of_head(heads[k]); !text.empty())
       return refusal(fmt::format("head {}: {}", k, text));
   if (const std::string text = complaint_of_wishes(wishes, samples, heads.size()); !text.empty()) return refusal(text);
+  if (const std::string text = complaint_of_seen(wishes); !text.empty()) return refusal(text);
 
   auto state = std::make_unique<State>();
   state->heads = std::move(heads);
@@ -236,11 +265,17 @@ Result<HeadAims> HeadAims::make(const ContrastSamples& samples, const FeatureClu
     return refusal("no head sees any of the object: something stands between them, or it turns away from them all");
   full.objective =
       std::make_unique<AimObjective>(full.samples, full.features, full.wishes, state->reference_lx, state->all_watts);
+  if (full.wishes.seen) full.seen_sights = seen_sights_of(*state, room, *full.wishes.seen);
   const std::size_t stride =
       options.search_points > 0 ? (samples.interest + options.search_points - 1) / options.search_points : 1;
-  if (stride > 1) {
-    state->thinned = std::make_unique<AimJudge>(thinned_judge(full, stride));
+  if (stride > 1 || full.wishes.seen_quick) {
+    state->thinned = std::make_unique<AimJudge>(thinned_judge(full, std::max<std::size_t>(1, stride)));
     AimJudge& judge = *state->thinned;
+    if (full.wishes.seen_quick) {
+      judge.wishes.seen = full.wishes.seen_quick;
+      judge.wishes.seen_fixed_lux = full.wishes.seen_quick_fixed_lux;
+      judge.seen_sights = seen_sights_of(*state, room, *judge.wishes.seen);
+    }
     judge.objective = std::make_unique<AimObjective>(judge.samples, judge.features, judge.wishes, state->reference_lx,
                                                      state->all_watts);
   }
@@ -268,7 +303,7 @@ Result<AimResult> HeadAims::solve() const {
   AimResult result;
   result.tried = found.tried;
   keep_limits(state, found.settings);
-  if (state.full.wishes.relative && !(state.full.wishes.energy_weight > 0)) {
+  if (state.full.wishes.measure != AimMeasure::lux && !(state.full.wishes.energy_weight > 0)) {
     brighten(state, found.settings);
     keep_limits(state, found.settings);  // fixed light may have shifted the ratio of key to fill
   }

@@ -7,7 +7,8 @@
 /// fixed, until nothing gains. Then the aims are refined between the candidates. Visibility from each head is found
 /// once (head_sight.h), so all of this is arithmetic.
 ///
-/// Direct light of heads as points. Reflected light can be given as fixed light.
+/// Direct light of heads as points. Reflected light is fixed light, or the same everywhere (HangingHead::reflected_lx);
+/// only what is seen takes the latter into account.
 
 #include "core/highlight/aim/aim_objective.h"
 #include "core/highlight/aim/hanging_head.h"

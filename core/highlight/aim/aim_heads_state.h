@@ -13,7 +13,7 @@ struct AimJudge {
   ContrastSamples samples;
   FeatureClusters features;
   AimWishes wishes;  ///< fixed_lux matches the samples
-  std::vector<HeadSight> sights, limit_sights;
+  std::vector<HeadSight> sights, limit_sights, seen_sights;
   std::unique_ptr<AimObjective> objective;
 
   [[nodiscard]] AimColumn column(const HangingHead& head, std::size_t index, const HeadSetting& setting) const;
@@ -26,7 +26,7 @@ struct HeadAims::State {
   Vec3 middle_world_m = Vec3::Zero();  ///< of the interest points
   double reference_lx = 0, all_watts = 0;
   AimJudge full;
-  std::unique_ptr<AimJudge> thinned;  ///< empty if there are few samples
+  std::unique_ptr<AimJudge> thinned;  ///< empty if there are few samples and no coarser picture
   [[nodiscard]] const AimJudge& search_judge() const { return thinned ? *thinned : full; }
 
   [[nodiscard]] AimSum sum(const AimJudge& judge, std::span<const HeadSetting> settings) const;
@@ -37,7 +37,7 @@ struct HeadAims::State {
 [[nodiscard]] std::vector<Vec3> voted_aims(const HangingHead& head, double narrowest_rad, const HeadSight& sight,
                                            const ContrastSamples& samples, std::size_t most);
 
-/// Settings found with search_judge(), and the number tried.
+/// Settings found with search_judge(), and the number tried; of what is seen, refined with all samples.
 struct SearchedAims {
   std::vector<HeadSetting> settings;
   std::size_t tried = 0;

@@ -10,6 +10,9 @@ namespace {
 
 /// Share of reference_lx that a head must give the lit side of its shadow edge to make it visible.
 constexpr double kSeenShare = 0.02;
+/// For each head at full level, of what is seen. Under limits a head that lights the object by the edge of its beam, past
+/// it, would be as good as one that is dimmed.
+constexpr double kLevelCost = 0.02;
 /// Unit of movement time: about the time a head takes from one aim to the next.
 constexpr double kUsualMove_s = 4;
 /// Share of the mean illuminance below which relative contrast fades to zero.
@@ -17,6 +20,8 @@ constexpr double kDarkShare = 0.1;
 /// Share of the lux that the strongest head can give or the limit allows: an eye does not adapt to a darker object.
 /// Without it, in a dark room, the faint edge of a beam that misses the object would score best.
 constexpr double kDarkestAdaptation = 0.02;
+/// The same for what is seen. Reflected light shows an object as evenly as any, so beams would leave it for the wall.
+constexpr double kDarkestSeen = 0.1;
 /// Rounding may lift a level that was scaled to a limit slightly over it.
 constexpr double kLimitSlack = 1e-9;
 
@@ -28,20 +33,25 @@ AimObjective::AimObjective(const ContrastSamples& samples, const FeatureClusters
   LUXRIG_CHECK(features.cluster_of_point.size() == samples.interest, "{} features' points, {} interest points",
                features.cluster_of_point.size(), samples.interest);
   LUXRIG_CHECK(reference_lx > 0, "reference of {} lx", reference_lx);
+  LUXRIG_CHECK((wishes.measure == AimMeasure::seen) == (wishes.seen != nullptr), "{} what is seen",
+               wishes.seen ? "unused" : "no");
 }
 
 AimSum AimObjective::nothing() const {
   AimSum sum;
   sum.sample_lux = wishes_.fixed_lux.empty() ? std::vector<double>(samples(), 0) : wishes_.fixed_lux;
   for (const AimLimit& limit : wishes_.limits) sum.limit_lux.push_back(limit.fixed_lx);
+  if (wishes_.seen) sum.seen_lux = wishes_.seen_fixed_lux;
+  if (wishes_.seen) sum.seen_lux.resize(wishes_.seen->samples().size(), 0);
   sum.covered.assign(features_.sizes.size(), 0);
   for (std::size_t i = 0; i < samples_.interest; ++i) sum.mean_lux += sum.sample_lux[i];
   sum.mean_lux /= static_cast<double>(samples_.interest);
   return sum;
 }
 
-AimColumn AimObjective::column(std::vector<double> sample_lux, std::vector<double> limit_lux) const {
-  AimColumn column{std::move(sample_lux), std::move(limit_lux), {}, 0};
+AimColumn AimObjective::column(std::vector<double> sample_lux, std::vector<double> limit_lux,
+                               std::vector<float> seen_lux) const {
+  AimColumn column{std::move(sample_lux), std::move(limit_lux), {}, 0, std::move(seen_lux)};
   column.feature_lux.assign(features_.sizes.size(), 0);
   for (std::size_t i = 0; i < samples_.interest; ++i) {
     const double mine = column.sample_lux[i];
@@ -59,10 +69,13 @@ void AimObjective::add(AimSum& sum, const AimColumn& column, double level, HeadR
   if (!(level > 0)) return;
   for (std::size_t i = 0; i < sum.sample_lux.size(); ++i) sum.sample_lux[i] += level * column.sample_lux[i];
   for (std::size_t i = 0; i < sum.limit_lux.size(); ++i) sum.limit_lux[i] += level * column.limit_lux[i];
+  const auto share = static_cast<float>(level);
+  for (std::size_t i = 0; i < sum.seen_lux.size(); ++i) sum.seen_lux[i] += share * column.seen_lux[i];
   for (std::size_t f = 0; f < sum.covered.size(); ++f)
     if (level * column.feature_lux[f] >= kSeenShare * reference_lx_) sum.covered[f] = 1;
   sum.mean_lux += level * column.mean_lux;
   if (role == HeadRole::key) sum.key_mean_lux += level * column.mean_lux;
+  sum.levels += level;
   sum.watts += level * watts;
   sum.travel_s = std::max(sum.travel_s, travel_s);
   sum.travel_total_s += travel_s;
@@ -107,10 +120,12 @@ void AimObjective::measure_contrast(const AimSum& sum, AimScore& score) const {
   score.relative_contrast /= static_cast<double>(samples_.interest);
 }
 
-AimScore AimObjective::score(const AimSum& sum) const {
+AimScore AimObjective::scored(const AimSum& sum, bool all) const {
   AimScore score;
   const auto interest = static_cast<double>(samples_.interest);
-  measure_contrast(sum, score);
+  if (all || !wishes_.seen) measure_contrast(sum, score);
+  if (wishes_.seen)
+    score.seen = wishes_.seen->score(sum.seen_lux, kDarkestSeen * std::min(reference_lx_, wishes_.max_object_lx));
   score.coverage = static_cast<double>(std::count(sum.covered.begin(), sum.covered.end(), 1)) /
                    static_cast<double>(std::max<std::size_t>(1, sum.covered.size()));
   score.mean_lx = sum.mean_lux;
@@ -125,9 +140,13 @@ AimScore AimObjective::score(const AimSum& sum) const {
                         score.watts <= wishes_.max_watts * (1 + kLimitSlack);
   for (std::size_t i = 0; i < sum.limit_lux.size(); ++i)
     score.within_limits &= sum.limit_lux[i] <= wishes_.limits[i].max_lx * (1 + kLimitSlack);
-  score.objective = (wishes_.relative ? score.relative_contrast : score.local_contrast_lx / reference_lx_) +
-                    wishes_.coverage_weight * score.coverage - wishes_.base_weight * score.below_base -
-                    wishes_.travel_weight * sum.travel_total_s / kUsualMove_s;
+  score.objective = -wishes_.base_weight * score.below_base - wishes_.travel_weight * sum.travel_total_s / kUsualMove_s;
+  if (score.seen)
+    score.objective += score.seen->objective - (wishes_.limited() ? kLevelCost * sum.levels : 0);
+  else
+    score.objective +=
+        (wishes_.measure == AimMeasure::relative ? score.relative_contrast : score.local_contrast_lx / reference_lx_) +
+        wishes_.coverage_weight * score.coverage;
   if (all_watts_ > 0) score.objective -= wishes_.energy_weight * sum.watts / all_watts_;
   if (wishes_.key) {
     const double fill = sum.mean_lux - sum.key_mean_lux;

@@ -1,13 +1,15 @@
 #pragma once
-/// The objective for aimed heads: local contrast and covered features, against energy, darkness and long moves, under
-/// limits of lux.
+/// The objective for aimed heads: what is seen of the object (seen_contrast.h), or local contrast and covered features
+/// as in the thesis; against energy, darkness and long moves, under limits of lux.
 
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "core/highlight/seen/seen_contrast.h"
 #include "core/highlight/shadow/contrast_samples.h"
 #include "core/highlight/surface/feature_clusters.h"
 
@@ -21,10 +23,17 @@ struct AimLimit {
   double fixed_lx = 0;  ///< of light that stays on
 };
 
+/// What is made large. With `seen` and `relative` heads are as bright as the limits allow, unless energy has a weight.
+enum class AimMeasure {
+  lux,       ///< local contrast in lux
+  relative,  ///< local contrast relative to both places
+  seen,      ///< SeenScore::objective; covered features count nothing
+};
+
 struct AimWishes {
-  /// Judge by relative contrast, as an adapting eye or camera does; heads are then as bright as the limits allow,
-  /// unless energy has a weight. Otherwise judge by contrast in lux.
-  bool relative = false;
+  AimMeasure measure = AimMeasure::lux;
+  /// Needed if `measure` is seen; otherwise both are empty. `quick` is a coarser picture for the first search.
+  std::shared_ptr<const SeenContrast> seen, seen_quick;
   std::vector<AimLimit> limits;
   double max_object_lx = std::numeric_limits<double>::infinity();  ///< at every sample of the object
   double max_watts = std::numeric_limits<double>::infinity();      ///< of all heads together
@@ -36,6 +45,7 @@ struct AimWishes {
   double base_lx = 0;  ///< wanted at interest points, with base_weight
   /// Fixed light (daylight, lights that stay on) at each sample [lx]; empty = darkness.
   std::vector<double> fixed_lux;
+  std::vector<float> seen_fixed_lux, seen_quick_fixed_lux;  ///< the same at the samples of `seen` and `seen_quick`
 
   [[nodiscard]] bool limited() const {
     return !limits.empty() || std::isfinite(max_object_lx) || std::isfinite(max_watts) || key.has_value();
@@ -63,7 +73,8 @@ struct AimScore {
   double object_lx = 0;                                           ///< of the brightest sample
   std::vector<double> limit_lx;                                   ///< at each of AimWishes::limits
   bool within_limits = true;
-  double objective = 0;  ///< contrast / reference_lx (or relative contrast) + weighted terms; the search maximises it
+  std::optional<SeenScore> seen;  ///< if the measure is `seen`
+  double objective = 0;  ///< the measure (contrast in lux over reference_lx) + weighted terms; the search maximises it
 };
 
 /// Light of one head at full level at everything that is judged.
@@ -71,13 +82,15 @@ struct AimColumn {
   std::vector<double> sample_lux, limit_lux;
   std::vector<double> feature_lux;  ///< in each feature: on the lit side of the head's brightest shadow edge
   double mean_lux = 0;              ///< over interest points
+  std::vector<float> seen_lux;      ///< at the samples of AimWishes::seen
 };
 
 /// Light of all heads together.
 struct AimSum {
   std::vector<double> sample_lux, limit_lux;
+  std::vector<float> seen_lux;
   std::vector<std::uint8_t> covered;  ///< per feature
-  double mean_lux = 0, key_mean_lux = 0, watts = 0, travel_s = 0, travel_total_s = 0;
+  double mean_lux = 0, key_mean_lux = 0, levels = 0, watts = 0, travel_s = 0, travel_total_s = 0;
 };
 
 class AimObjective {
@@ -91,7 +104,8 @@ class AimObjective {
   /// The fixed light alone.
   [[nodiscard]] AimSum nothing() const;
   /// lux   of a head at every sample, and at every limit
-  [[nodiscard]] AimColumn column(std::vector<double> sample_lux, std::vector<double> limit_lux) const;
+  [[nodiscard]] AimColumn column(std::vector<double> sample_lux, std::vector<double> limit_lux,
+                                 std::vector<float> seen_lux) const;
   void add(AimSum& sum, const AimColumn& column, double level, HeadRole role, double watts, double travel_s) const;
 
   /// Largest level at which the added light breaks no limit; 0 if one is already broken.
@@ -99,9 +113,12 @@ class AimObjective {
   /// ratios   also keep the ratio of key to fill
   [[nodiscard]] double highest_level(const AimSum& others, const AimColumn& column, HeadRole role, double max_level,
                                      double watts, bool ratios = true) const;
-  [[nodiscard]] AimScore score(const AimSum& sum) const;
+  [[nodiscard]] AimScore score(const AimSum& sum) const { return scored(sum, true); }
+  /// AimScore::objective, without measures that do not count in it.
+  [[nodiscard]] double objective(const AimSum& sum) const { return scored(sum, false).objective; }
 
  private:
+  [[nodiscard]] AimScore scored(const AimSum& sum, bool all) const;
   void measure_contrast(const AimSum& sum, AimScore& score) const;
 
   const ContrastSamples& samples_;

@@ -10,8 +10,8 @@
 namespace luxrig {
 namespace {
 
-/// Shares of the level that the limits allow, or of the highest level.
-constexpr double kLevelShares[] = {0, 0.05, 0.1, 0.2, 0.35, 0.5, 0.75, 1};
+/// Shares of the level that the limits allow, or of the highest level; besides 0.
+constexpr double kLevelShares[] = {1, 0.75, 0.5, 0.35, 0.2, 0.1, 0.05};
 /// If heads share a limit, a head's room may be what the others give up.
 constexpr double kOthersShares[] = {1, 0.7, 0.4};
 constexpr int kMaxSweeps = 12;
@@ -37,7 +37,7 @@ std::pair<Vec3, Vec3> across(const Vec3& direction) {
 class AimSearch {
  public:
   AimSearch(const HeadAims::State& state, const std::vector<std::vector<Vec3>>& first_aims)
-      : state_(state), judge_(state.search_judge()), limited_(judge_.wishes.limited()) {
+      : state_(state), judge_(&state.search_judge()), limited_(judge_->wishes.limited()) {
     for (std::size_t k = 0; k < state.heads.size(); ++k) {
       columns_.emplace_back();
       if (first_aims[k].empty()) continue;
@@ -46,7 +46,7 @@ class AimSearch {
         for (const Vec3& aim : first_aims[k])
           if (const auto joints = joints_towards(head, aim, zoom)) columns_[k].push_back({{*joints, zoom, 0}, {}});
       parallel_for(columns_[k].size(), state.options.threads, [&, k](std::size_t c) {
-        columns_[k][c].column = judge_.column(state_.heads[k], k, columns_[k][c].setting);
+        columns_[k][c].column = judge_->column(state_.heads[k], k, columns_[k][c].setting);
       });
     }
   }
@@ -60,6 +60,7 @@ class AimSearch {
       }
       if (best.settings.empty() || look.objective > best.objective) best = std::move(look);
     }
+    if (state_.full.wishes.seen && judge_ != &state_.full) judge_in_full(best);
     for (double step = kFirstStep; step >= kLastStep && !stopped();) {
       const double was = best.objective;
       for (std::size_t k = 0; k < state_.heads.size(); ++k) refine(best, k, step);
@@ -84,11 +85,11 @@ class AimSearch {
   };
 
   [[nodiscard]] bool stopped() const { return state_.options.watch.stop.stop_requested(); }
-  [[nodiscard]] HeadRole role_of(std::size_t head) const { return role_in(judge_.wishes, head); }
+  [[nodiscard]] HeadRole role_of(std::size_t head) const { return role_in(judge_->wishes, head); }
 
   /// The sum of all heads but one, each at a share of its level.
   [[nodiscard]] AimSum without(const Look& look, std::size_t head, double share = 1) const {
-    AimSum sum = judge_.objective->nothing();
+    AimSum sum = judge_->objective->nothing();
     for (std::size_t k = 0; k < look.settings.size(); ++k) {
       if (k == head) continue;
       HeadSetting setting = look.settings[k];
@@ -99,8 +100,8 @@ class AimSearch {
   }
   void add(AimSum& sum, std::size_t k, const HeadSetting& setting, const AimColumn& column) const {
     const HangingHead& head = state_.heads[k];
-    judge_.objective->add(sum, column, setting.level, role_of(k), head.watts,
-                          travel_s(head, head.present, setting.joints));
+    judge_->objective->add(sum, column, setting.level, role_of(k), head.watts,
+                           travel_s(head, head.present, setting.joints));
   }
 
   /// Starts: dark; each head with its first aim as bright as the others allow; each with an equal share of its level
@@ -114,7 +115,7 @@ class AimSearch {
       if (start == Start::dark || columns_[k].empty()) continue;
       if (start == Start::present) {
         if (!may_light(state_.heads[k], look.settings[k].joints)) continue;
-        look.columns[k] = judge_.column(state_.heads[k], k, look.settings[k]);
+        look.columns[k] = judge_->column(state_.heads[k], k, look.settings[k]);
       } else {
         look.settings[k] = columns_[k].front().setting;
         look.columns[k] = columns_[k].front().column;
@@ -122,33 +123,36 @@ class AimSearch {
     }
     for (std::size_t k = 0; start != Start::dark && k < count; ++k) {
       if (columns_[k].empty() || !may_light(state_.heads[k], look.settings[k].joints)) continue;
-      const AimSum others = start == Start::bright ? without(look, k) : judge_.objective->nothing();
+      const AimSum others = start == Start::bright ? without(look, k) : judge_->objective->nothing();
       // A ratio between heads has no meaning while the others are dark.
       const bool alone = start != Start::bright;
       look.settings[k].level =
-          judge_.objective->highest_level(others, look.columns[k], role_of(k), state_.heads[k].max_level,
-                                          state_.heads[k].watts, !alone) /
+          judge_->objective->highest_level(others, look.columns[k], role_of(k), state_.heads[k].max_level,
+                                           state_.heads[k].watts, !alone) /
           (alone ? static_cast<double>(count) : 1.0);
     }
-    look.objective = judge_.objective->score(without(look, count)).objective;
+    look.objective = judge_->objective->objective(without(look, count));
     return look;
   }
 
   /// The best level of a head with this light, with the others fixed.
   [[nodiscard]] Tried best_level(const AimSum& others, std::size_t k, const HeadSetting& setting,
                                  const AimColumn& column) const {
-    Tried best;
     const double most =
-        judge_.objective->highest_level(others, column, role_of(k), state_.heads[k].max_level, state_.heads[k].watts);
-    for (const double share : kLevelShares) {
-      if (share > 0 && !(most > 0)) break;
+        judge_->objective->highest_level(others, column, role_of(k), state_.heads[k].max_level, state_.heads[k].watts);
+    const auto at = [&](double level) {
       AimSum sum = others;
-      HeadSetting at = setting;
-      at.level = share * most;
-      add(sum, k, at, column);
-      const double objective = judge_.objective->score(sum).objective;
-      if (objective > best.objective) best = {at.level, objective};
-    }
+      HeadSetting lit = setting;
+      lit.level = level;
+      add(sum, k, lit, column);
+      return Tried{level, judge_->objective->objective(sum)};
+    };
+    Tried best = at(0);
+    if (!(most > 0)) return best;
+    // What is seen is the same at every level of a single light: then the highest.
+    for (const double share : kLevelShares)
+      if (const Tried tried = at(share * most); tried.objective > best.objective + (best.level > 0 ? kMinGain : 0))
+        best = tried;
     return best;
   }
 
@@ -180,6 +184,15 @@ class AimSearch {
       gained = true;
     }
     return gained;
+  }
+
+  /// From here on by all samples and the fine picture, which aims are refined by.
+  void judge_in_full(Look& look) {
+    judge_ = &state_.full;
+    parallel_for(look.settings.size(), state_.options.threads, [&](std::size_t k) {
+      if (look.settings[k].level > 0) look.columns[k] = judge_->column(state_.heads[k], k, look.settings[k]);
+    });
+    look.objective = judge_->objective->objective(without(look, look.settings.size()));
   }
 
   void set(Look& look, std::size_t k, HeadSetting setting, double level, AimColumn column, double objective) const {
@@ -221,7 +234,7 @@ class AimSearch {
     }
     std::vector<Tried> tried(ways.size());
     parallel_for(ways.size(), state_.options.threads, [&](std::size_t w) {
-      if (w > 0) ways[w].column = judge_.column(head, k, ways[w].setting);
+      if (w > 0) ways[w].column = judge_->column(head, k, ways[w].setting);
       tried[w] = best_level(others, k, ways[w].setting, ways[w].column);
     });
     tried_ += tried.size();
@@ -233,7 +246,7 @@ class AimSearch {
   }
 
   const HeadAims::State& state_;
-  const AimJudge& judge_;
+  const AimJudge* judge_;
   bool limited_;  ///< heads share a limit
   std::vector<std::vector<Candidate>> columns_;
   std::size_t tried_ = 0;

@@ -28,6 +28,7 @@ struct HangingHead {
   std::vector<ZoomStop> zoom;  ///< at least one; the first is the present one
   double max_level = 1;        ///< 0…1
   double watts = 0;            ///< at full level
+  double reflected_lx = 0;     ///< by way of the room, everywhere on the object, at full level and whatever its aim
   /// Whether it may be lit with these joints; only if it moves. Empty = with any.
   std::function<bool(const Joints&)> may_light{};
 };

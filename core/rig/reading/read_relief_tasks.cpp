@@ -52,6 +52,7 @@ void RigReader::read_relief(Section& s, ReliefSpec& relief) {
   if (relief.max_lx && !(*relief.max_lx > 0))
     problems.add(s.place_of("max_object_lx"), "max_object_lx of 0 leaves nothing to light", "give it some lux");
   s.read("coverage_weight", relief.coverage_weight);
+  s.read_choice("objective", relief.seen);
 }
 
 void RigReader::read_highlight(Section& s, HighlightSpec& highlight) {
@@ -68,6 +69,9 @@ void RigReader::read_directions(Section& s, DirectionsSpec& directions) {
 void RigReader::read_aim_task(Section& s, AimSpec& aim) {
   read_relief(s, aim.relief);
   s.read_choice("contrast", aim.relief.relative);
+  if (s.has("contrast") && !s.has("objective")) aim.relief.seen = false;
+  if (aim.relief.seen)
+    s.refuse("contrast", "contrast has no effect with objective = \"seen\"", "remove it, or objective");
   std::vector<std::string_view> fixture_names, point_names;
   std::vector<std::string> head_names;
   NameIndex heads("fixture");

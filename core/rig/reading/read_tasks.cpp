@@ -19,7 +19,7 @@ const KindKeys kKeysOfKinds[] = {
     {{TaskKind::placement},
      {"error_wanted", "improvement", "method", "indirect", "fixtures", "seconds", "aimed", "energy_front", "bound"}},
     {{TaskKind::aim, TaskKind::highlight, TaskKind::directions}, {"object", "scale_mm", "interest", "seen_by"}},
-    {{TaskKind::aim, TaskKind::highlight}, {"max_object_lx", "coverage_weight"}},
+    {{TaskKind::aim, TaskKind::highlight}, {"max_object_lx", "coverage_weight", "objective"}},
     {{TaskKind::directions}, {"distance_m"}},
     {{TaskKind::aim},
      {"contrast", "heads", "key", "min_key_to_fill", "max_key_to_fill", "eyes", "max_eye_lx", "base_lx", "base_weight",

@@ -464,6 +464,10 @@ TEST(Plan, CarriesTheResultsForARelief) {
   relief.before_local_contrast_lx = 56;
   relief.object_lux = 1042;
   relief.key_to_fill = 1.25;
+  relief.seen = 1.5;
+  relief.before_seen = 0.75;
+  relief.lit_share = 0.875;
+  relief.clipped_share = 0.0625;
   plan.tasks[0].relief = relief;
   plan.tasks[0].numbers = {{1, std::nan(""), 40.0}, {2, std::nan(""), 61.5}};
   const auto back = plan_from_json(to_json(plan), "plan.json");
@@ -477,6 +481,10 @@ TEST(Plan, CarriesTheResultsForARelief) {
   EXPECT_FALSE(task.relief->before_coverage);
   EXPECT_EQ(task.relief->object_lux, 1042);
   EXPECT_EQ(task.relief->key_to_fill, 1.25);
+  EXPECT_EQ(task.relief->seen, 1.5);
+  EXPECT_EQ(task.relief->before_seen, 0.75);
+  EXPECT_EQ(task.relief->lit_share, 0.875);
+  EXPECT_EQ(task.relief->clipped_share, 0.0625);
   ASSERT_EQ(task.numbers.size(), 2u);
   EXPECT_EQ(task.numbers[1].local_contrast_lx, 61.5);
   EXPECT_TRUE(std::isnan(task.numbers[1].normalised_error));

@@ -92,7 +92,7 @@ std::string dump(const Rig& rig) {
     const HighlightSpec& h = t.highlight;
     const DirectionsSpec& d = t.directions;
     for (const ReliefSpec& r : {a.relief, h.relief, d.relief})
-      add(r.object, text_of(r.scale_m), r.interest, text_of(r.max_lx), text_of(r.camera), r.relative,
+      add(r.object, text_of(r.scale_m), r.interest, text_of(r.max_lx), text_of(r.camera), r.seen, r.relative,
           r.coverage_weight);
     for (const std::size_t head : a.heads) add("head", head);
     for (const std::size_t eye : a.eyes) add("eye", eye);

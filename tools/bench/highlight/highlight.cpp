@@ -15,7 +15,7 @@ std::vector<BenchRow> bench_highlight(const BenchOptions& options) {
   std::vector<std::string> missing;
   for (HighlightObject& object : highlight_objects(options, missing))
     for (auto part : {add_curvature_rows, add_edge_rows, add_light_rows, add_number_rows, add_stable_rows, add_aim_rows,
-                      add_mounted_rows, add_mounted_number_rows})
+                      add_seen_rows, add_mounted_rows, add_mounted_number_rows})
       part(object, options, rows);
   add_cluster_rows(options, rows);
   for (std::string& reason : missing) {

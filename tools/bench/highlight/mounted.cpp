@@ -24,17 +24,6 @@ constexpr int kMountedRandom = 200, kMaxMounted = 12, kQuickMounted = 4;
 constexpr double kMountedLumens = 1000, kMountedBeam_rad = rad_from_deg(20), kMountedField_rad = rad_from_deg(40);
 constexpr double kBoxStep_m = 0.5;
 
-/// Scaled to a diagonal of 1 m.
-Scene of_one_metre(Scene scene) {
-  Eigen::AlignedBox3d box_m;
-  for (const auto& triangle : scene.triangles)
-    for (const std::uint32_t v : triangle) box_m.extend(scene.vertices_m[v].cast<double>());
-  const double scale = 1 / box_m.diagonal().norm();
-  for (Vec3f& v : scene.vertices_m) v = (scale * (v.cast<double>() - box_m.center())).cast<float>();
-  scene.origin_world_m.setZero();
-  return scene;
-}
-
 struct AimedPlace {
   Vec3 position_world_m, direction;
 };
@@ -50,7 +39,7 @@ struct MountedCase {
   PotentialLightOptions of_lights;
 
   MountedCase(const HighlightObject& original, const BenchOptions& bench)
-      : object(original.name(), of_one_metre(original.scene()), bench),
+      : object(original.name(), scaled_to_one_metre(original.scene()), bench),
         options(bench),
         domain(boxes_around(object, bench.quick)) {
     centres = domain.cell_centres();

@@ -63,6 +63,16 @@ bool highlight_wanted(const BenchOptions& options, const std::string& case_name)
   return case_name.rfind(options.only, 0) == 0;
 }
 
+Scene scaled_to_one_metre(Scene scene) {
+  Eigen::AlignedBox3d box_m;
+  for (const auto& triangle : scene.triangles)
+    for (const std::uint32_t v : triangle) box_m.extend(scene.vertices_m[v].cast<double>());
+  const double scale = 1 / box_m.diagonal().norm();
+  for (Vec3f& v : scene.vertices_m) v = (scale * (v.cast<double>() - box_m.center())).cast<float>();
+  scene.origin_world_m.setZero();
+  return scene;
+}
+
 ShownRelief shown_relief(const ReliefStudy& study, std::span<const Vec3> directions, int threads) {
   std::vector<DistantBeam> beams;
   for (const Vec3& direction : directions) beams.push_back({direction, 1});
@@ -83,6 +93,9 @@ BenchRow bench_row_of(const HighlightRow& row) {
   const auto shown = [&](double value) {
     return row.shown && std::isfinite(value) ? fmt::format("{:.4f}", value) : "";
   };
+  const auto seen = [&](double SeenRow::*value) {
+    return row.seen && std::isfinite((*row.seen).*value) ? fmt::format("{:.4g}", (*row.seen).*value) : "";
+  };
   const ShownRelief relief = row.shown.value_or(ShownRelief{});
   BenchRow made{row.case_name,
                 row.method,
@@ -96,6 +109,12 @@ BenchRow bench_row_of(const HighlightRow& row) {
                  {"transitions", shown(relief.transitions)},
                  {"local_contrast", shown(relief.local_contrast_lx)},
                  {"coverage", shown(relief.coverage)},
+                 {"seen", seen(&SeenRow::objective)},
+                 {"contrast", seen(&SeenRow::contrast)},
+                 {"contrast_rank", seen(&SeenRow::contrast_rank)},
+                 {"lit", seen(&SeenRow::lit)},
+                 {"lit_rank", seen(&SeenRow::lit_rank)},
+                 {"clipped", seen(&SeenRow::clipped)},
                  {"note", row.note}}};
   say_row_made(made);
   return made;

@@ -1,6 +1,7 @@
 #pragma once
 /// Objects of the highlight suite, made ready at first use, and its rows: all have the same columns.
 
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <string>
@@ -47,6 +48,16 @@ struct ShownRelief {
 };
 [[nodiscard]] ShownRelief shown_relief(const ReliefStudy& study, std::span<const Vec3> directions, int threads);
 
+/// What is seen of an object. All but `objective` is measured in a path-traced picture.
+struct SeenRow {
+  double objective = std::nan("");      ///< SeenScore::objective
+  double contrast = std::nan("");       ///< of lightness L* near the relief, exposed and clipped
+  double contrast_rank = std::nan("");  ///< among the random placements, 1 = above all of them
+  double lit = std::nan("");            ///< share of the relief that is not in shadow
+  double lit_rank = std::nan("");
+  double clipped = std::nan("");  ///< share of the object that is burnt or crushed
+};
+
 struct HighlightRow {
   std::string case_name, method;
   double error = 0;
@@ -55,17 +66,22 @@ struct HighlightRow {
   std::optional<std::uint64_t> rays = {};
   std::optional<ShownRelief> shown = {};
   std::string note = {};  ///< without commas
+  std::optional<SeenRow> seen = {};
 };
 [[nodiscard]] BenchRow bench_row_of(const HighlightRow& row);
 
 /// Writes the generated objects as OBJ, in metres. A file that cannot be written is reported on stderr.
 [[nodiscard]] std::vector<BenchRow> export_highlight_objects(const std::filesystem::path& folder);
 
+/// About the origin, its bounding box's diagonal 1 m.
+[[nodiscard]] Scene scaled_to_one_metre(Scene scene);
+
 /// Parts of the suite.
 void add_edge_rows(HighlightObject& object, const BenchOptions& options, std::vector<BenchRow>& rows);
 void add_light_rows(HighlightObject& object, const BenchOptions& options, std::vector<BenchRow>& rows);
 void add_number_rows(HighlightObject& object, const BenchOptions& options, std::vector<BenchRow>& rows);
 void add_stable_rows(HighlightObject& object, const BenchOptions& options, std::vector<BenchRow>& rows);
+void add_seen_rows(HighlightObject& object, const BenchOptions& options, std::vector<BenchRow>& rows);
 void add_aim_rows(HighlightObject& object, const BenchOptions& options, std::vector<BenchRow>& rows);
 void add_mounted_rows(HighlightObject& object, const BenchOptions& options, std::vector<BenchRow>& rows);
 void add_mounted_number_rows(HighlightObject& object, const BenchOptions& options, std::vector<BenchRow>& rows);

@@ -1,0 +1,110 @@
+#include "core/highlight/seen/seen_selection.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "core/check.h"
+#include "core/highlight/aim/head_sight.h"
+#include "core/parallel.h"
+
+namespace luxrig {
+namespace {
+
+constexpr double kDarkestShare = 0.25;
+constexpr double kTriedLevels[] = {1, 0.6, 0.35, 0.2, 0.1};
+constexpr int kMaxExchanges = 4;        // rounds over all chosen lights
+constexpr double kWorthAChange = 1e-4;  // of the objective
+constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+
+}  // namespace
+
+SeenSelection::SeenSelection(const SeenContrast& seen, const RayScene& room, std::vector<SeenCandidate> candidates,
+                             const IntensityDistribution& intensity, std::vector<float> fixed_lux,
+                             const SeenSelectionOptions& options)
+    : seen_(seen),
+      candidates_(std::move(candidates)),
+      lux_(candidates_.size()),
+      fixed_lux_(std::move(fixed_lux)),
+      options_(options) {
+  fixed_lux_.resize(seen.samples().size(), 0);
+  parallel_for(candidates_.size(), options.threads, [&](std::size_t c) {
+    const SeenCandidate& light = candidates_[c];
+    const HeadSight sight = sight_of(room, light.position_world_m, seen.samples(), 1);
+    std::vector<double> lux(seen.samples().size());
+    lux_of_aim(sight, intensity, {shortest_rotation(-Vec3::UnitZ(), light.direction), light.position_world_m}, lux);
+    for (const double lx : lux) lux_[c].push_back(static_cast<float>(lx + options.reflected_lx));
+  });
+  for (const std::vector<float>& lux : lux_)
+    darkest_lx_ = std::max(darkest_lx_, kDarkestShare * seen.score(lux).mean_lx);
+}
+
+std::vector<float> SeenSelection::light_of(const SeenChoice& choice, std::size_t without) const {
+  std::vector<float> lux = fixed_lux_;
+  for (std::size_t l = 0; l < choice.candidates.size(); ++l) {
+    if (l == without) continue;
+    const auto level = static_cast<float>(choice.levels[l]);
+    const std::vector<float>& of_light = lux_[choice.candidates[l]];
+    for (std::size_t i = 0; i < lux.size(); ++i) lux[i] += level * of_light[i];
+  }
+  return lux;
+}
+
+SeenScore SeenSelection::score(std::span<const std::size_t> candidates, std::span<const double> levels) const {
+  LUXRIG_CHECK(candidates.size() == levels.size(), "{} levels of {} lights", levels.size(), candidates.size());
+  const SeenChoice choice{{candidates.begin(), candidates.end()}, {levels.begin(), levels.end()}, {}};
+  return seen_.score(light_of(choice, kNone), darkest_lx_);
+}
+
+SeenSelection::Taken SeenSelection::best_beside(const SeenChoice& choice, std::size_t without) const {
+  const std::vector<float> others = light_of(choice, without);
+  std::vector<Taken> best(candidates_.size());
+  parallel_for(candidates_.size(), options_.threads, [&](std::size_t c) {
+    best[c] = {c, 0, -std::numeric_limits<double>::infinity()};
+    for (std::size_t l = 0; l < choice.candidates.size(); ++l)
+      if (l != without &&
+          (candidates_[choice.candidates[l]].position_world_m - candidates_[c].position_world_m).norm() <
+              options_.min_apart_m)
+        return;
+    std::vector<float> lux(others.size());
+    for (const double level : kTriedLevels) {
+      const auto share = static_cast<float>(level);
+      for (std::size_t i = 0; i < lux.size(); ++i) lux[i] = others[i] + share * lux_[c][i];
+      const double objective = seen_.score(lux, darkest_lx_).objective;
+      if (objective > best[c].objective) best[c] = {c, level, objective};
+    }
+  });
+  return *std::max_element(best.begin(), best.end(),
+                           [](const Taken& a, const Taken& b) { return a.objective < b.objective; });
+}
+
+void SeenSelection::settle(SeenChoice& choice) const {
+  for (int round = 0; round < kMaxExchanges; ++round) {
+    bool gained = false;
+    for (std::size_t l = 0; l < choice.candidates.size() && !options_.watch.stop.stop_requested(); ++l) {
+      const Taken better = best_beside(choice, l);
+      if (better.objective < choice.score.objective + kWorthAChange) continue;
+      choice.candidates[l] = better.candidate;
+      choice.levels[l] = better.level;
+      choice.score = score(choice.candidates, choice.levels);
+      gained = true;
+    }
+    if (!gained) return;
+  }
+}
+
+std::vector<SeenChoice> SeenSelection::up_to(int most) const {
+  std::vector<SeenChoice> by_number;
+  SeenChoice choice;
+  for (int n = 0; n < most && !options_.watch.stop.stop_requested(); ++n) {
+    const Taken taken = candidates_.empty() ? Taken{0, 0, 0} : best_beside(choice, kNone);
+    if (!(taken.level > 0)) break;  // no place is left
+    choice.candidates.push_back(taken.candidate);
+    choice.levels.push_back(taken.level);
+    choice.score = score(choice.candidates, choice.levels);
+    settle(choice);
+    by_number.push_back(choice);
+  }
+  return by_number;
+}
+
+}  // namespace luxrig

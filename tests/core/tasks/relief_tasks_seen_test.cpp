@@ -1,0 +1,59 @@
+/// Relief tasks by what is seen, which is the default.
+#include <gtest/gtest.h>
+
+#include "tests/core/tasks/relief_tasks_fixture.h"
+
+namespace luxrig {
+namespace {
+
+using namespace relief_tasks_fixture;
+
+const std::string kSeenAim = replaced(kAim, "contrast = \"lux\"\n", "");
+
+TEST_F(AimTask, BringsOutWhatIsSeenByDefault) {
+  const SolvedTasks solved = solved_of(well(std::string(kWellRig) + kSeenAim), direct_light());
+  const PlannedRelief& relief = *solved.plan.tasks[0].relief;
+  ASSERT_TRUE(relief.seen && relief.before_seen && relief.lit_share && relief.clipped_share);
+  EXPECT_GT(*relief.seen, *relief.before_seen);
+  EXPECT_GT(*relief.lit_share, 0.5);
+  EXPECT_GT(relief.object_lux, 100);
+  // The thesis's objective says nothing about it.
+  const SolvedTasks thesis = solved_of(well(std::string(kWellRig) + kAim), direct_light());
+  EXPECT_FALSE(thesis.plan.tasks[0].relief->seen);
+}
+
+TEST_F(AimTask, KeepsTheObjectsLimitByWhatIsSeenAndIsAsBrightAsItMayBe) {
+  const SolvedTasks solved =
+      solved_of(well(std::string(kWellRig) + kSeenAim + "max_object_lx = 120\n"), direct_light());
+  const PlannedRelief& relief = *solved.plan.tasks[0].relief;
+  EXPECT_LE(relief.object_lux, 120 * (1 + 1e-9));
+  EXPECT_GT(relief.object_lux, 0.9 * 120);
+  EXPECT_GT(*relief.lit_share, 0.5);
+}
+
+// A dark room gives nothing back; a white ceiling does.
+TEST_F(AimTask, ReflectedLightFillsWhatIsSeen) {
+  const std::string rig = std::string(kWellRig) + kSeenAim;
+  ComputeOptions all;
+  all.max_error = 0.1;
+  const Session session = well(rig);
+  const SolvedTasks direct = solved_of(session, direct_light()), filled = solved_of(session, all);
+  EXPECT_LE(*filled.plan.tasks[0].relief->clipped_share, *direct.plan.tasks[0].relief->clipped_share + 0.02);
+}
+
+TEST_F(HighlightTask, ChoosesPlacesByWhatIsSeen) {
+  const std::string seen = replaced(kHighlight, "objective = \"thesis\"\n", "");
+  const SolvedTasks solved = solved_of(well(std::string(kWellRig) + seen), direct_light());
+  const PlannedTask& task = solved.plan.tasks[0];
+  ASSERT_TRUE(task.relief->seen);
+  EXPECT_GT(*task.relief->lit_share, 0.5);
+  ASSERT_GE(task.lights.size(), 1u);
+  ASSERT_LE(task.lights.size(), 2u);
+  for (const PlannedLight& light : task.lights) {
+    EXPECT_GT(light.position_world_m.z(), 2.7);
+    EXPECT_LT(light.position_world_m.z(), 3);
+  }
+}
+
+}  // namespace
+}  // namespace luxrig
