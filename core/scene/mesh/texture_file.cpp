@@ -1,10 +1,12 @@
-#include <jerror.h>
+// clang-format off
+#include <cstdio>  // jpeglib.h needs it
 #include <jpeglib.h>
+#include <jerror.h>
+// clang-format on
 #include <png.h>
 
 #include <algorithm>
 #include <csetjmp>
-#include <cstdio>  // jpeglib.h needs it
 #include <cstring>
 
 #include "core/scene/texture.h"
