@@ -108,11 +108,11 @@ name = "some"; kind = "placement"; luminaire #> "measured"; max_lights; rest
 [[task]]
 name = "four"; kind = "placement"; luminaire; lights
 [[task]]
-name = "relief"; kind = "aim"; object #> "cup"; scale_mm; interest; seen_by #> "aside"; max_object_lx; objective; contrast
+name = "relief"; kind = "aim"; object #> "cup"; scale_mm; interest; seen_by #> "aside"; max_object_lx; contrast
 coverage_weight; heads #> ["head-1"]; key #> "head-2"; min_key_to_fill; max_key_to_fill; eyes #> ["table top"]
 max_eye_lx; base_lx; base_weight; energy_weight; travel_weight
 [[task]]
-name = "detail"; kind = "highlight"; luminaire; object; max_lights
+name = "detail"; kind = "highlight"; luminaire; object; max_lights; objective
 [[task]]
 name = "held"; kind = "directions"; object; distance_m
 [[keep_out]]
