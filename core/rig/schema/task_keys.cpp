@@ -134,10 +134,10 @@ constexpr KeySpec kTaskKeys[] = {
      "what is made large (kind `aim` and `highlight`): what an eye or a camera at one exposure gets of its form, "
      "relief and outline, without burnt and black parts (`seen`), from the camera of `seen_by` or from three sides; "
      "or contrast at its recessed places and their coverage (`thesis`); left out, `thesis` where `contrast` is given"},
-    {"task", "contrast", text, "", R"("relative")", kAny, "lux, relative", R"("lux")",
+    {"task", "contrast", text, "", kNone, kAny, "lux, relative", R"("lux")",
      "which contrast objective `thesis` makes large (only with kind `aim`): the difference in illuminance to what is "
      "beside it, in `lux`, or `relative` to both, as an eye or a camera sees that adapts; then lights are as bright as "
-     "limits let them"},
+     "limits let them; left out, `relative`"},
     {"task", "coverage_weight", number, "", "0.25", kWeight, "", "0.5",
      "what it is worth that every feature has a shadow's edge, beside contrast (kind `aim` and `highlight`, with "
      "objective `thesis`)"},
