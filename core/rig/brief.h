@@ -56,7 +56,7 @@ struct ReliefSpec {
   std::optional<double> scale_m;        ///< scale at which its curvature is measured; none = from the mesh
   double interest = 0.1;                ///< share of its surface that counts, the most recessed first
   std::optional<double> max_lx;         ///< highest allowed anywhere on it
-  bool seen = true;                     ///< judged by what is seen of it; false = by contrast at its recessed places
+  bool seen = false;                    ///< judged by what is seen of it; false = by contrast at its recessed places
   bool relative = true;                 ///< that contrast as an adapted eye sees it; false = in lux
   double coverage_weight = 0.25;        ///< weight of features with a shadow edge, relative to contrast
   std::optional<std::size_t> camera{};  ///< only relief that it sees counts; none = all

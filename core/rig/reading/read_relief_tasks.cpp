@@ -69,7 +69,6 @@ void RigReader::read_directions(Section& s, DirectionsSpec& directions) {
 void RigReader::read_aim_task(Section& s, AimSpec& aim) {
   read_relief(s, aim.relief);
   s.read_choice("contrast", aim.relief.relative);
-  if (s.has("contrast") && !s.has("objective")) aim.relief.seen = false;
   if (aim.relief.seen)
     s.refuse("contrast", "contrast has no effect with objective = \"seen\"", "remove it, or objective");
   std::vector<std::string_view> fixture_names, point_names;

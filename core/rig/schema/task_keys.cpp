@@ -130,14 +130,14 @@ constexpr KeySpec kTaskKeys[] = {
      "left out, all sides"},
     {"task", "max_object_lx", number, "lx", kNone, kLux, "", "900",
      "never more than this anywhere on the object (kind `aim` and `highlight`)"},
-    {"task", "objective", text, "", R"("seen")", kAny, "thesis, seen", R"("thesis")",
-     "what is made large (kind `aim` and `highlight`): what an eye or a camera at one exposure gets of its form, "
-     "relief and outline, without burnt and black parts (`seen`), from the camera of `seen_by` or from three sides; "
-     "or contrast at its recessed places and their coverage (`thesis`); left out, `thesis` where `contrast` is given"},
-    {"task", "contrast", text, "", kNone, kAny, "lux, relative", R"("lux")",
+    {"task", "objective", text, "", R"("thesis")", kAny, "thesis, seen", R"("seen")",
+     "what is made large (kind `aim` and `highlight`): contrast at its recessed places and their coverage (`thesis`); "
+     "or what an eye or a camera at one exposure gets of its form, relief and outline, without burnt and black parts "
+     "(`seen`), from the camera of `seen_by` or from three sides"},
+    {"task", "contrast", text, "", R"("relative")", kAny, "lux, relative", R"("lux")",
      "which contrast objective `thesis` makes large (only with kind `aim`): the difference in illuminance to what is "
      "beside it, in `lux`, or `relative` to both, as an eye or a camera sees that adapts; then lights are as bright as "
-     "limits let them; left out, `relative`"},
+     "limits let them"},
     {"task", "coverage_weight", number, "", "0.25", kWeight, "", "0.5",
      "what it is worth that every feature has a shadow's edge, beside contrast (kind `aim` and `highlight`, with "
      "objective `thesis`)"},

@@ -84,7 +84,6 @@ inline constexpr const char* kAim =
 /// Two lights off the ceiling.
 inline constexpr const char* kHighlight =
     "[[task]]\nname = \"detail\"\nkind = \"highlight\"\nluminaire = \"spot\"\nobject = \"slab\"\nlights = 2\n"
-    "objective = \"thesis\"\n"
     "[mounting]\nsurfaces = [\"ceiling\"]\noffset_m = [0.05, 0.15]\n";
 
 /// "beside" with its own limit.

@@ -1,4 +1,4 @@
-/// Relief tasks by what is seen, which is the default.
+/// Relief tasks by what is seen.
 #include <gtest/gtest.h>
 
 #include "tests/core/tasks/relief_tasks_fixture.h"
@@ -8,9 +8,9 @@ namespace {
 
 using namespace relief_tasks_fixture;
 
-const std::string kSeenAim = replaced(kAim, "contrast = \"lux\"\n", "");
+const std::string kSeenAim = replaced(kAim, "contrast = \"lux\"", "objective = \"seen\"");
 
-TEST_F(AimTask, BringsOutWhatIsSeenByDefault) {
+TEST_F(AimTask, BringsOutWhatIsSeen) {
   const SolvedTasks solved = solved_of(well(std::string(kWellRig) + kSeenAim), direct_light());
   const PlannedRelief& relief = *solved.plan.tasks[0].relief;
   ASSERT_TRUE(relief.seen && relief.before_seen && relief.lit_share && relief.clipped_share);
@@ -42,7 +42,7 @@ TEST_F(AimTask, ReflectedLightFillsWhatIsSeen) {
 }
 
 TEST_F(HighlightTask, ChoosesPlacesByWhatIsSeen) {
-  const std::string seen = replaced(kHighlight, "objective = \"thesis\"\n", "");
+  const std::string seen = replaced(kHighlight, "object = \"slab\"", "object = \"slab\"\nobjective = \"seen\"");
   const SolvedTasks solved = solved_of(well(std::string(kWellRig) + seen), direct_light());
   const PlannedTask& task = solved.plan.tasks[0];
   ASSERT_TRUE(task.relief->seen);

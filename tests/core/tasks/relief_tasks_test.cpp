@@ -490,7 +490,7 @@ TEST_F(AimTask, KeepsTheWholeObjectWithinItsLimit) {
 }
 
 TEST_F(AimTask, LightsAnObjectInADarkRoomWithTheDefaultContrast) {
-  const Session session = well(std::string(kWellRig) + replaced(kAim, "contrast = \"lux\"", "objective = \"thesis\""));
+  const Session session = well(std::string(kWellRig) + replaced(kAim, "contrast = \"lux\"\n", ""));
   const SolvedTasks solved = solved_of(session, direct_light());
   EXPECT_GT(WellLight(session, turned(solved), levels_of(solved), direct_light()).mean_lx(), 10);
 }

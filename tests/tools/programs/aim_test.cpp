@@ -167,7 +167,6 @@ kind = "highlight"
 luminaire = "spot"
 object = "slab"
 max_lights = 3
-objective = "thesis"
 )");
   const json task = solved(rig, folder / "plan.json")["tasks"][0];
   ASSERT_EQ(task["numbers"].size(), 3u) << task;
