@@ -120,14 +120,6 @@ std::vector<double> levels_of(std::span<const LampStep> lit, const Rig& rig) {
 
 double most_share(double level) { return kStrongest * std::pow(level, kFlattest); }
 
-bool keeps_limits(const Rig& rig, const Eigen::MatrixXd& stated_lux, const Eigen::VectorXd& level) {
-  const Eigen::VectorXd most = level.unaryExpr(&most_share);
-  for (std::size_t p = 0; p < rig.points.size(); ++p)
-    if (rig.points[p].max_lx && stated_lux.row(static_cast<Eigen::Index>(p)).dot(most) > *rig.points[p].max_lx)
-      return false;
-  return true;
-}
-
 std::vector<double> brightest_levels(const Rig& rig, const Eigen::MatrixXd& stated_lux) {
   LUXRIG_CHECK(stated_lux.cols() == static_cast<Eigen::Index>(rig.fixtures.size()), "light of {} fixtures",
                stated_lux.cols());

@@ -31,9 +31,6 @@ struct LampStep {
 /// most_share(). stated_lux: RigLight::stated_lux().
 [[nodiscard]] std::vector<double> brightest_levels(const Rig& rig, const Eigen::MatrixXd& stated_lux);
 
-/// Whether these levels keep every limit, even if each lamp gives most_share().
-[[nodiscard]] bool keeps_limits(const Rig& rig, const Eigen::MatrixXd& stated_lux, const Eigen::VectorXd& level);
-
 /// All lamps that dim, at once, as bright as their sum may be. brightest: of each alone.
 [[nodiscard]] std::vector<double> levels_together(const Rig& rig, const Eigen::MatrixXd& stated_lux,
                                                   std::span<const double> brightest);

@@ -194,7 +194,7 @@ Result<TransportMatrix> light_of(const RayScene& scene, std::span<const Receiver
 namespace {
 
 /// A known light is as it was measured: traced light is scaled to it, at the point and at a luxmeter there.
-void put_known_lights(const Rig& rig, TransportMatrix& light) {
+void scale_to_known_lights(const Rig& rig, TransportMatrix& light) {
   /// What differs by more is not traced well enough to be scaled.
   constexpr double kMostScale = 5;
   for (const KnownLight& known : rig.known_lights) {
@@ -266,7 +266,7 @@ Result<TransportMatrix> traced(const Rig& rig, const RayScene& rays, const Compu
 Result<TransportMatrix> compute_transport(const Rig& rig, const RayScene& rays, const ComputeOptions& options,
                                           const Look& look, ModelUsed* used, const KeptTransport* before) {
   auto light = traced(rig, rays, options, look, used, before);
-  if (light) put_known_lights(rig, *light);
+  if (light) scale_to_known_lights(rig, *light);
   return light;
 }
 
