@@ -8,10 +8,9 @@
 
 namespace luxrig {
 
-/// What a person asks of surfaces.
+/// What is asked of the points of a painting.
 struct SurfaceGoal {
   std::string name;
-  std::vector<Stroke> strokes;   ///< the lux, and where
   std::optional<double> max_lx;  ///< hard limit wherever it is painted
   double weight = 1;             ///< > 0, beside other goals
 };

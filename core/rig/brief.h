@@ -23,6 +23,23 @@ struct Point {
   FilePosition in_file;
 };
 
+/// Light that is painted on surfaces. `luxrig paint` keeps its strokes, and lays out points for them in a file beside,
+/// which are read as the rig's points.
+struct SurfaceGoalSpec {
+  std::string name;
+  std::filesystem::path strokes_file;  ///< core/goals/painting_file.h
+  std::optional<double> max_lx;        ///< hard limit at its points
+  double weight = 1;
+  double patch_m = 0.1;                           ///< size of the patches that strokes cover
+  double min_spacing_m = 0.2, max_spacing_m = 1;  ///< of its points: where it has most detail, and where it has none
+  FilePosition in_file;
+
+  /// points_csv.h
+  [[nodiscard]] std::filesystem::path points_file() const {
+    return std::filesystem::path(strokes_file).replace_extension(".csv");
+  }
+};
+
 enum class PlacementSearch { luxrig, gpk15, gp16 };
 /// Names as in core/solve/placement/placement_methods.h.
 [[nodiscard]] constexpr const char* name_of(PlacementSearch search) {

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <optional>
 
+#include "core/fingerprint.h"
 #include "core/rig/problem_list.h"
 #include "core/rig/reading/section.h"
 #include "core/rig/schema.h"
@@ -18,6 +19,8 @@ namespace luxrig {
 namespace {
 
 constexpr std::size_t kMaxBytes = std::size_t{64} << 20;
+
+constexpr std::string_view kMadeFor = "# made for ";
 
 enum Column { kName, kX, kY, kZ, kNx, kNy, kNz, kGoal, kGoalX, kGoalY, kGoalCct, kWeightColumn, kMax, kColumns };
 constexpr std::array<std::string_view, kColumns> kColumnNames = {
@@ -103,7 +106,7 @@ class PointsReader {
     if (!has_header_) {
       problems_.add({1, 1}, "no header line", "begin with: name,x_m,y_m,z_m,nx,ny,nz,goal_lx,weight,max_lx");
     }
-    return {std::move(rows_), problems_.take()};
+    return {std::move(rows_), {}, problems_.take()};
   }
 
  private:
@@ -262,6 +265,9 @@ class PointsReader {
 PointsTable parse_points_csv(std::string_view text, const std::string& file_name, std::size_t most) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   PointsReader reader(file_name, most);
+  std::string made_for;
+  if (text.starts_with(kMadeFor))
+    made_for = trimmed(text.substr(kMadeFor.size(), text.find_first_of("\r\n") - kMadeFor.size()));
   for (int number = 1; !text.empty(); ++number) {
     const std::size_t end = text.find('\n');
     std::string_view line = text.substr(0, end);
@@ -269,23 +275,70 @@ PointsTable parse_points_csv(std::string_view text, const std::string& file_name
     reader.line(line, number);
     text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
   }
-  return reader.take();
+  PointsTable table = reader.take();
+  table.made_for = std::move(made_for);
+  return table;
 }
 
-PointsTable load_points_csv(const std::filesystem::path& path, std::size_t most) {
-  const auto refuse = [&](std::string what, std::string mend) {
-    return PointsTable{{}, {{path.string(), 0, 0, std::move(what), std::move(mend)}}};
-  };
+namespace {
+
+/// none = it cannot be read, or is too long.
+std::optional<std::string> text_of(const std::filesystem::path& path, std::string& why) {
   std::error_code error;
   const auto size = std::filesystem::file_size(path, error);
-  if (!error && size > kMaxBytes) return refuse("the file is over 64 MiB", "leave some points out");
+  why = "the file cannot be read";
+  if (!error && size > kMaxBytes) {
+    why = "the file is over 64 MiB";
+    return std::nullopt;
+  }
   std::ifstream in(path, std::ios::binary);
-  if (error || !in) return refuse("the file cannot be read", "check who may read it");
+  if (error || !in) return std::nullopt;
   std::string text(size, '\0');
   in.read(text.data(), static_cast<std::streamsize>(size));
-  if (in.bad()) return refuse("the file cannot be read", "check the disk");
+  if (in.bad()) return std::nullopt;
   text.resize(static_cast<std::size_t>(in.gcount()));
-  return parse_points_csv(text, path.string(), most);
+  return text;
+}
+
+/// A cell as PointsReader reads it.
+std::string cell_of(const std::string& text) {
+  if (text.find_first_of(",\"") == std::string::npos && trimmed(text) == text && !text.starts_with('#')) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + '"';
+}
+
+}  // namespace
+
+PointsTable load_points_csv(const std::filesystem::path& path, std::size_t most) {
+  std::string why;
+  const auto text = text_of(path, why);
+  if (!text) return {{}, {}, {{path.string(), 0, 0, why, "leave some points out, or check who may read it"}}};
+  return parse_points_csv(*text, path.string(), most);
+}
+
+std::string painted_version(const SurfaceGoalSpec& goal) {
+  std::string why;
+  const auto strokes = text_of(goal.strokes_file, why);
+  if (!strokes) return "";
+  Fingerprint fingerprint;
+  fingerprint.add(*strokes);
+  fingerprint.add(goal.name);
+  fingerprint.add(goal.max_lx);
+  for (const double value : {goal.weight, goal.patch_m, goal.min_spacing_m, goal.max_spacing_m}) fingerprint.add(value);
+  return fmt::format("{:016x}", fingerprint.value());
+}
+
+std::string points_csv(std::span<const Point> points, const std::string& made_for) {
+  std::string csv = fmt::format("{}{}\nname,x_m,y_m,z_m,nx,ny,nz,goal_lx,weight,max_lx\n", kMadeFor, made_for);
+  const auto optional = [](const std::optional<double>& value) { return value ? fmt::format("{}", *value) : ""; };
+  for (const Point& point : points) {
+    csv += cell_of(point.name);
+    for (const Vec3& vector : {point.position_world_m, point.normal_world})
+      for (const double value : vector) csv += fmt::format(",{}", value);
+    csv += fmt::format(",{},{},{}\n", optional(point.goal_lx), point.weight, optional(point.max_lx));
+  }
+  return csv;
 }
 
 }  // namespace luxrig

@@ -11,6 +11,8 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -27,6 +29,7 @@ struct PointsTable {
     FilePosition in_file;                 ///< of the name, in the CSV file
   };
   std::vector<Row> rows;          ///< rows without a problem
+  std::string made_for;           ///< after "# made for " in the first line, if that is a comment: painted_version()
   std::vector<Problem> problems;  ///< file:line:column of the CSV file; at most 1000
 };
 
@@ -34,5 +37,11 @@ struct PointsTable {
 [[nodiscard]] PointsTable parse_points_csv(std::string_view text, const std::string& file_name, std::size_t most);
 /// Refuses a file over 64 MiB.
 [[nodiscard]] PointsTable load_points_csv(const std::filesystem::path& path, std::size_t most);
+
+/// Says what the points of a surface goal follow from: its strokes, limit, weight and spacing. Empty if its strokes cannot
+/// be read.
+[[nodiscard]] std::string painted_version(const SurfaceGoalSpec& goal);
+/// A file with these points for load_points_csv().
+[[nodiscard]] std::string points_csv(std::span<const Point> points, const std::string& made_for);
 
 }  // namespace luxrig

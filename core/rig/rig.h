@@ -31,6 +31,7 @@ struct Rig {
   std::vector<PictureCamera> cameras;
   std::optional<Daylight> daylight;
   std::vector<Point> points;
+  std::vector<SurfaceGoalSpec> surface_goals;  ///< their points are among `points`
   std::vector<Task> tasks;
   MountingSpec mounting;
   std::vector<KeepOut> keep_outs;

@@ -131,20 +131,21 @@ void RigReader::read_all() {
   read_tasks();  // they refer to luminaires, fixtures, objects and points, and need goals
 }
 
-Checked<Rig> parse_rig(std::string_view text, const std::filesystem::path& file, const std::filesystem::path& folder) {
+Checked<Rig> parse_rig(std::string_view text, const std::filesystem::path& file, const std::filesystem::path& folder,
+                       PaintedPoints painted) {
   if (text.size() > kMaxRigBytes) {
     return refuse(file, fmt::format("the file has {} bytes", text.size()),
                   "a rig file may have at most 16 MiB; put many points into a [points] file");
   }
   const Checked<NodeTable> document = parse_document(text, file.string());
   if (!document) return tl::unexpected(document.error());
-  RigReader reader(*document, file, folder);
+  RigReader reader(*document, file, folder, painted);
   reader.read_all();
   if (!reader.problems.empty()) return tl::unexpected(reader.problems.take());
   return std::move(reader.rig);
 }
 
-Checked<Rig> load_rig(const std::filesystem::path& path) {
+Checked<Rig> load_rig(const std::filesystem::path& path, PaintedPoints painted) {
   std::error_code error;
   const std::filesystem::path file = std::filesystem::is_directory(path, error) ? path / "rig.toml" : path;
   if (!std::filesystem::is_regular_file(file, error)) {
@@ -158,7 +159,7 @@ Checked<Rig> load_rig(const std::filesystem::path& path) {
   in.read(text.data(), static_cast<std::streamsize>(text.size()));
   if (!in.is_open() || in.bad()) return refuse(file, "the file cannot be read", "check who may read it");
   text.resize(static_cast<std::size_t>(in.gcount()));
-  return parse_rig(text, file, file.parent_path());
+  return parse_rig(text, file, file.parent_path(), painted);
 }
 
 }  // namespace luxrig

@@ -16,11 +16,11 @@ constexpr Command kTestCommand{"test", command_group::kRun, "scenarios on the si
 
 const std::vector<Command>& command_table() {
   static const std::vector<Command> table = {
-      kInitCommand,   kCheckCommand,    kImportCommand,    kEvaluateCommand, kSolveCommand,      kRenderCommand,
-      kRunCommand,    kApplyCommand,    kStatusCommand,    kLevelCommand,    kGoalCommand,       kReleaseCommand,
-      kParkCommand,   kBlackoutCommand, kHandBackCommand,  kReloadCommand,   kPageCommand,       kMonitorCommand,
-      kBypassCommand, kTestCommand,     kDevicesCommand,   kRdmCommand,      kIdentifyCommand,   kCameraCommand,
-      kRecordCommand, kReplayCommand,   kCalibrateCommand, kBenchCommand,    kCompletionCommand,
+      kInitCommand,    kCheckCommand,  kImportCommand,   kPaintCommand,     kEvaluateCommand, kSolveCommand,
+      kRenderCommand,  kRunCommand,    kApplyCommand,    kStatusCommand,    kLevelCommand,    kGoalCommand,
+      kReleaseCommand, kParkCommand,   kBlackoutCommand, kHandBackCommand,  kReloadCommand,   kPageCommand,
+      kMonitorCommand, kBypassCommand, kTestCommand,     kDevicesCommand,   kRdmCommand,      kIdentifyCommand,
+      kCameraCommand,  kRecordCommand, kReplayCommand,   kCalibrateCommand, kBenchCommand,    kCompletionCommand,
   };
   return table;
 }

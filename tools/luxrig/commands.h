@@ -6,7 +6,7 @@
 namespace luxrig {
 
 extern const Command kInitCommand, kCheckCommand, kImportCommand;
-extern const Command kEvaluateCommand, kSolveCommand, kRenderCommand;
+extern const Command kPaintCommand, kEvaluateCommand, kSolveCommand, kRenderCommand;
 extern const Command kRunCommand, kStatusCommand, kMonitorCommand;
 extern const Command kCalibrateCommand, kDevicesCommand, kRdmCommand, kCameraCommand, kRecordCommand, kReplayCommand;
 extern const Command kCompletionCommand;

@@ -4,26 +4,71 @@
 #include "core/rig/reading/rig_reader.h"
 
 namespace luxrig {
+namespace {
+
+std::size_t room_for_points(const Rig& rig) {
+  const std::size_t most = section_spec("point").most;
+  return most - std::min(rig.points.size(), most);
+}
+
+}  // namespace
 
 void RigReader::read_points_file(Section& s) {
   const auto path = read_file(s, "file");
   if (!path) return;
-  const FilePosition in_file = s.place_of("file");
-  const std::size_t room = section_spec("point").most - std::min(rig.points.size(), section_spec("point").most);
-  PointsTable table = load_points_csv(*path, room);
+  add_points(load_points_csv(*path, room_for_points(rig)), *path, s.place_of("file"));
+}
+
+void RigReader::read_surface_goal(Section& s) {
+  SurfaceGoalSpec goal;
+  goal.in_file = s.in_file();
+  if (s.read("name", goal.name)) surface_goals.add(goal.name, rig.surface_goals.size(), s.place_of("name"), problems);
+  std::string strokes;
+  s.read("strokes", strokes);
+  goal.strokes_file = folder / strokes;
+  s.read("max_lx", goal.max_lx);
+  s.read("weight", goal.weight);
+  s.read("patch_m", goal.patch_m);
+  s.read("min_spacing_m", goal.min_spacing_m);
+  s.read("max_spacing_m", goal.max_spacing_m);
+  if (goal.min_spacing_m > goal.max_spacing_m)
+    problems.add(s.place_of(s.has("min_spacing_m") ? "min_spacing_m" : "max_spacing_m"),
+                 fmt::format("min_spacing_m {} is above max_spacing_m {}", goal.min_spacing_m, goal.max_spacing_m),
+                 "make it the smaller of the two");
+  const FilePosition in_file = s.place_of("strokes");
+  const auto same_file = [&](const SurfaceGoalSpec& other) { return other.strokes_file == goal.strokes_file; };
+  if (!strokes.empty() && std::any_of(rig.surface_goals.begin(), rig.surface_goals.end(), same_file))
+    return problems.add(in_file, fmt::format("another surface goal has the strokes {}", in_quotes(strokes)),
+                        "give each its own file");
+  const auto points_file = goal.points_file();
+  rig.surface_goals.push_back(goal);
+  if (strokes.empty() || painted == PaintedPoints::left_out) return;
+  const auto lay_out = [&](std::string what) {
+    problems.add(in_file, std::move(what), fmt::format("lay out its points: luxrig paint {}", rig.file.string()));
+  };
+  std::error_code error;
+  if (!std::filesystem::exists(points_file, error))
+    return lay_out(fmt::format("surface goal {} has no points yet", in_quotes(goal.name)));
+  auto table = load_points_csv(points_file, room_for_points(rig));
+  if (table.made_for != painted_version(goal))
+    return lay_out(fmt::format("the points of surface goal {} are of other strokes or settings", in_quotes(goal.name)));
+  add_points(std::move(table), points_file, in_file);
+}
+
+void RigReader::add_points(PointsTable table, const std::filesystem::path& path, const FilePosition& in_file) {
   for (Problem& problem : table.problems) problems.add(std::move(problem));
   for (PointsTable::Row& row : table.rows) {
     row.point.in_file = in_file;
     if (const auto taken = points.find(row.point.name)) {
-      problems.add({path->string(), row.in_file.line, row.in_file.column,
+      problems.add({path.string(), row.in_file.line, row.in_file.column,
                     fmt::format("a second point is called {}", in_quotes(row.point.name)),
                     "give each point its own name"});
     } else {
       points.add(row.point.name, rig.points.size(), in_file, problems);
     }
-    if (row.goal_xy) set_goal_xy(row.point, *row.goal_xy, path->string(), row.in_file);
+    if (row.goal_xy) set_goal_xy(row.point, *row.goal_xy, path.string(), row.in_file);
     rig.points.push_back(std::move(row.point));
-    point_places.emplace_back(path->string(), row.in_file);
+    point_places.emplace_back(path.string(), row.in_file);
   }
 }
 
@@ -91,6 +136,7 @@ void RigReader::read_points() {
     point_places.emplace_back(problems.file(), s.in_file());
   });
   each(root, "points", [&](Section& s) { read_points_file(s); });
+  each(root, "surface_goal", [&](Section& s) { read_surface_goal(s); });
   check_goal_colours();
   for (const Point& point : rig.points) {
     // Legal, since the limit wins, but seldom intended.

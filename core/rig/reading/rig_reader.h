@@ -16,11 +16,12 @@
 
 #include "core/photometry/light_colour.h"
 #include "core/rig/patch_map.h"
+#include "core/rig/points_csv.h"
 #include "core/rig/problem_list.h"
 #include "core/rig/reading/document.h"
 #include "core/rig/reading/mode_slots.h"
 #include "core/rig/reading/section.h"
-#include "core/rig/rig.h"
+#include "core/rig/rig_file.h"
 
 namespace luxrig {
 
@@ -55,17 +56,19 @@ struct StatedLight {
 };
 
 struct RigReader {
-  RigReader(const NodeTable& document, const std::filesystem::path& file, std::filesystem::path folder_of_files)
-      : root(document), folder(std::move(folder_of_files)), problems(file.string()) {
+  RigReader(const NodeTable& document, const std::filesystem::path& file, std::filesystem::path folder_of_files,
+            PaintedPoints painted_points)
+      : root(document), folder(std::move(folder_of_files)), painted(painted_points), problems(file.string()) {
     rig.file = file;
   }
 
   const NodeTable& root;
   std::filesystem::path folder;
+  PaintedPoints painted;
   ProblemList problems;
   Rig rig;
-  NameIndex luminaires{"luminaire"}, buses{"bus"}, points{"point"}, objects{"scene object"}, fixtures{"fixture"},
-      cameras{"camera"};
+  NameIndex luminaires{"luminaire"}, buses{"bus"}, points{"point"}, objects{"scene object"},
+      surface_goals{"surface goal"}, fixtures{"fixture"}, cameras{"camera"};
   PatchMap patches;
   /// Place of each point, in the rig file or the points file.
   std::vector<std::pair<std::string, FilePosition>> point_places;
@@ -82,6 +85,9 @@ struct RigReader {
   void read_buses();
   void read_points();
   void read_points_file(Section& section);
+  void read_surface_goal(Section& section);
+  /// Of a CSV file, for a line of the rig file.
+  void add_points(PointsTable table, const std::filesystem::path& path, const FilePosition& in_file);
   void read_fixtures();
   void read_luxmeters();
   void read_daylight();

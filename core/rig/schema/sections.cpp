@@ -19,6 +19,7 @@ constexpr SectionSpec kSections[] = {
     {"camera", true, 100, false},
     {"point", true, 100000, false},
     {"points", false, 1, false},
+    {"surface_goal", true, 1000, false},
     {"task", true, 1000, false},
     {"mounting", false, 1, false},
     {"keep_out", true, 1000, false},

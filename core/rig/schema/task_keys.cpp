@@ -33,6 +33,24 @@ constexpr KeySpec kTaskKeys[] = {
 
     {"points", "file", file, "", kRequired, kAny, "", R"("points.csv")", "CSV file; see The points file"},
 
+    {"surface_goal", "name", name, "", kRequired, kAny, "", R"("drawing")", "name of the painted light"},
+    {"surface_goal", "strokes", text, "", kRequired, kAny, "", R"("drawing.json")",
+     "file with its strokes, which `luxrig paint` writes; the points that follow from them are in a CSV file of the "
+     "same name beside it"},
+    {"surface_goal", "max_lx", number, "lx", kNone, kLux, "", "200", "never more than this at its points"},
+    {"surface_goal", "weight", number, "", "1", {0, 1e6}, "", "2", "how much it counts against other goals"},
+    {"surface_goal", "patch_m", number, "m", "0.1", {0.001, 10}, "", "0.05", "size of the patches that strokes cover"},
+    {"surface_goal",
+     "min_spacing_m",
+     number,
+     "m",
+     "0.2",
+     {0, 1000, true},
+     "",
+     "0.1",
+     "distance of its points where it has most detail"},
+    {"surface_goal", "max_spacing_m", number, "m", "1", {0, 1000, true}, "", "0.5", "and where it has none"},
+
     {"task", "name", name, "", kRequired, kAny, "", R"("levels")", "name of the task"},
     {"task", "kind", text, "", kRequired, kAny, "emittance, placement, aim, highlight, directions", R"("emittance")",
      "`emittance`: the level of every fixture; `placement`: where further lights should hang, and their levels; `aim`: "

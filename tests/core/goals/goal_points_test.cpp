@@ -28,7 +28,7 @@ TEST(GoalPoints, AreApartByTheirSpacingAndLeaveNoGap) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const GoalSampling sampling{0.12, 0.9, 0.2, seed};
     const std::vector<double> spacing_m = spacing_of(floor.surface, floor.lux, sampling);
-    const std::vector<GoalPoint> points = goal_points(floor.surface, floor.lux, {"floor", {}, 400, 2}, sampling);
+    const std::vector<GoalPoint> points = goal_points(floor.surface, floor.lux, {"floor", 400, 2}, sampling);
     std::vector<double> spacing_of_point_m;
     double weights = 0, area = 0;
     for (const GoalPoint& point : points) {
@@ -79,7 +79,7 @@ TEST(GoalPoints, AreDenseOnlyWhereTheGoalHasDetail) {
                 spacing_m[p] + 0.5 * (at - floor.surface.position_world_m(link.patch)).norm() + 1e-6);
   }
   std::size_t even = 0, detailed = 0;
-  for (const GoalPoint& point : goal_points(floor.surface, floor.lux, {"floor", {}, {}, 1}, sampling)) {
+  for (const GoalPoint& point : goal_points(floor.surface, floor.lux, {"floor", {}, 1}, sampling)) {
     even += point.place.position_world_m.x() > 4.5;
     detailed += std::abs(point.place.position_world_m.x() - 1.2) < 0.75;
   }
@@ -90,7 +90,7 @@ TEST(GoalPoints, AreDenseOnlyWhereTheGoalHasDetail) {
 TEST(GoalPoints, WithoutPaintThereIsNone) {
   const PaintedFloor floor;
   const std::vector<float> bare(floor.surface.size(), std::numeric_limits<float>::quiet_NaN());
-  EXPECT_TRUE(goal_points(floor.surface, bare, {"floor", {}, {}, 1}, {}).empty());
+  EXPECT_TRUE(goal_points(floor.surface, bare, {"floor", {}, 1}, {}).empty());
   // Dark everywhere is a goal, too, and has no detail.
   const std::vector<float> dark(floor.surface.size(), 0);
   for (const double spacing_m : spacing_of(floor.surface, dark, {0.1, 0.7, 0.2, 1})) EXPECT_EQ(spacing_m, 0.7);

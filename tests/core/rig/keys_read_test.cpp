@@ -83,6 +83,8 @@ std::string dump(const Rig& rig) {
     add(p.name, text_of(p.position_world_m), text_of(p.normal_world), text_of(p.goal_lx), text_of(p.goal_rgb), p.weight,
         text_of(p.max_lx));
   }
+  for (const SurfaceGoalSpec& g : rig.surface_goals)
+    add(g.name, g.strokes_file.string(), text_of(g.max_lx), g.weight, g.patch_m, g.min_spacing_m, g.max_spacing_m);
   for (const auto& t : rig.tasks) {
     const PlacementSpec& p = t.placement;
     add(t.name, static_cast<int>(t.kind), p.luminaire, text_of(p.lights), p.max_lights, p.error_wanted, p.improvement,
@@ -186,7 +188,7 @@ class KeysRead : public testing::Test {
   std::string read(const std::vector<Line>& lines) {
     std::string text;
     for (const Line& line : lines) text += line.text + "\n";
-    const Checked<Rig> rig = parse_rig(text, "sink.toml", folder_);
+    const Checked<Rig> rig = parse_rig(text, "sink.toml", folder_, PaintedPoints::left_out);
     if (rig) return dump(*rig);
     return "REFUSED " + test::listed(rig.error());
   }

@@ -44,6 +44,35 @@ TEST(PointsCsv, ReadsQuotesCommentsByteOrderMarkAndCarriageReturns) {
   EXPECT_EQ(table.rows[1].point.position_world_m, Vec3(4, 5, 6));
 }
 
+TEST(PointsCsv, WhatIsWrittenIsReadAsTheSame) {
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> any(-9, 9);
+  for (const std::string name : {"a", "a, \"b\"", " padded ", "#1", "Gemälde"}) {
+    std::vector<Point> points(3);
+    for (Point& point : points) {
+      point.name = name + std::to_string(&point - points.data());
+      point.position_world_m = Vec3(any(random), any(random), any(random));
+      point.normal_world = Vec3(any(random), any(random), any(random)).normalized();
+      point.weight = std::abs(any(random));
+    }
+    points[0].goal_lx = 1 / 3.0;
+    points[1].max_lx = 200;
+    const auto table = parse_points_csv(points_csv(points, "0123"), "p.csv", 10);
+    ASSERT_TRUE(table.problems.empty()) << test::listed(table.problems);
+    EXPECT_EQ(table.made_for, "0123");
+    ASSERT_EQ(table.rows.size(), points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Point& read = table.rows[i].point;
+      EXPECT_EQ(read.name, points[i].name);
+      EXPECT_EQ(read.position_world_m, points[i].position_world_m);
+      EXPECT_NEAR((read.normal_world - points[i].normal_world).norm(), 0, 1e-15);
+      EXPECT_EQ(read.goal_lx, points[i].goal_lx);
+      EXPECT_EQ(read.max_lx, points[i].max_lx);
+      EXPECT_EQ(read.weight, points[i].weight);
+    }
+  }
+}
+
 TEST(PointsCsv, CountsColumnsInCharactersNotBytes) {
   const auto table = parse_points_csv("name,x_m,y_m,z_m\nGemälde,?,2,3\n", "p.csv", 10);
   ASSERT_EQ(table.problems.size(), 1u);

@@ -45,10 +45,11 @@ TEST(Reference, ExamplesTogetherMakeAValidRig) {
   std::ofstream(folder / "points.csv") << blocks("csv");
   std::ofstream(folder / "track-spot.ies") << "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 3 1 1 2 0 0 0\n1 1 10\n"
                                               "0 45 90\n0\n100 50 0\n";
-  const Checked<Rig> rig = parse_rig(blocks("toml"), "REFERENCE.md", folder);
+  const Checked<Rig> rig = parse_rig(blocks("toml"), "REFERENCE.md", folder, PaintedPoints::left_out);
   ASSERT_TRUE(rig) << test::listed(rig.error()) << blocks("toml");
   EXPECT_EQ(rig->fixtures.size(), 8u) << "four, and one with four emitters";
   EXPECT_EQ(rig->points.size(), 4u);
+  EXPECT_EQ(rig->surface_goals.size(), 1u);
   EXPECT_EQ(rig->points[3].name, "shelf 2, top");
   EXPECT_NEAR(rig->luminaires[0].intensity->flux_lm(), 1000, 1e-6);
   EXPECT_TRUE(rig->notes.empty()) << rig->notes[0].text();

@@ -112,7 +112,7 @@ void add_strokes(const BenchOptions& options, std::vector<BenchRow>& rows) {
   say_row_made(rows.back());
   GoalColumns columns = columns_of(*canvas);
   std::size_t points = 0;
-  const CallSeconds took = timed([&] { points = goal_points(surface, painting.lux(), {"all", {}, {}, 1}, {}).size(); });
+  const CallSeconds took = timed([&] { points = goal_points(surface, painting.lux(), {"all", {}, 1}, {}).size(); });
   columns.cpu_s = took.cpu;
   columns.note = fmt::format("{} points", points);
   rows.push_back(goal_row("points-1e6", "goal points", took.wall, {}, columns));
