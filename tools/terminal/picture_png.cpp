@@ -14,16 +14,16 @@ namespace {
 
 constexpr int kLegendWidth_px = 96;
 
-void write_title(cairo_t* pen, const std::string& title, int height_px) {
+void write_title(cairo_t* pen, const std::string& title, int left_px, int height_px) {
   if (title.empty()) return;
   set_png_font(pen, 14);
   cairo_text_extents_t size;
   cairo_text_extents(pen, title.c_str(), &size);
   cairo_set_source_rgba(pen, 0, 0, 0, 0.55);
-  cairo_rectangle(pen, 8, height_px - 30, size.x_advance + 16, 22);
+  cairo_rectangle(pen, left_px + 8, height_px - 30, size.x_advance + 16, 22);
   cairo_fill(pen);
   cairo_set_source_rgb(pen, 1, 1, 1);
-  cairo_move_to(pen, 16, height_px - 14);
+  cairo_move_to(pen, left_px + 16, height_px - 14);
   cairo_show_text(pen, title.c_str());
 }
 
@@ -39,6 +39,25 @@ Vec3 colour_in(const ColourTable& table, double at) {
   for (std::size_t c = 0; c < 3; ++c)
     colour[static_cast<Eigen::Index>(c)] = ((1 - share) * table[low][c] + share * table[low + 1][c]) / 255;
   return colour;
+}
+
+/// Puts it on a canvas that is as high or higher.
+void develop(const Photograph& photograph, int left_px, cairo_surface_t* surface) {
+  constexpr double kWhite = 6;  // exposed luminance shown as white
+  const Picture& picture = *photograph.picture;
+  const double exposure = kWhite / photograph.look.white_cd_m2;
+  // A black body's blue may be nearly zero. Do not amplify the little that there is.
+  const Vec3 balance = photograph.look.white_rgb.cwiseMax(0.05).cwiseInverse();
+  paint_png(surface, left_px, 0, picture.width_px, picture.height_px, [&](int x, int y) {
+    const Vec3 rgb =
+        picture.luminance_cd_m2[static_cast<std::size_t>(y * picture.width_px + x)].cast<double>().cwiseProduct(
+            balance);
+    const double exposed = exposure * luminance_of_rgb(rgb);
+    if (!(exposed > 0)) return Vec3(Vec3::Zero());
+    const double shown = exposed * (1 + exposed / (kWhite * kWhite)) / (1 + exposed);
+    const Vec3 linear = rgb * (exposure * shown / exposed);
+    return Vec3(srgb(linear.x()), srgb(linear.y()), srgb(linear.z()));
+  });
 }
 
 }  // namespace
@@ -78,23 +97,21 @@ double round_up_1_2_5(double value) {
 
 std::string write_photograph(const Picture& picture, const std::string& title, const PhotographLook& look,
                              const std::filesystem::path& file) {
-  constexpr double kWhite = 6;  // exposed luminance shown as white
-  const double exposure = kWhite / look.white_cd_m2;
-  // A black body's blue may be nearly zero. Do not amplify the little that there is.
-  const Vec3 balance = look.white_rgb.cwiseMax(0.05).cwiseInverse();
-  const PngSurface surface = make_png_surface(picture.width_px, picture.height_px);
-  paint_png(surface.get(), 0, 0, picture.width_px, picture.height_px, [&](int x, int y) {
-    const Vec3 rgb =
-        picture.luminance_cd_m2[static_cast<std::size_t>(y * picture.width_px + x)].cast<double>().cwiseProduct(
-            balance);
-    const double exposed = exposure * luminance_of_rgb(rgb);
-    if (!(exposed > 0)) return Vec3(Vec3::Zero());
-    const double shown = exposed * (1 + exposed / (kWhite * kWhite)) / (1 + exposed);
-    const Vec3 linear = rgb * (exposure * shown / exposed);
-    return Vec3(srgb(linear.x()), srgb(linear.y()), srgb(linear.z()));
-  });
+  const Photograph one{&picture, title, look};
+  return write_photographs({&one, 1}, file);
+}
+
+std::string write_photographs(std::span<const Photograph> photographs, const std::filesystem::path& file) {
+  int width_px = 0;
+  for (const Photograph& one : photographs) width_px += one.picture->width_px;
+  const PngSurface surface = make_png_surface(width_px, photographs.front().picture->height_px);
   const PngPen pen = make_png_pen(surface);
-  write_title(pen.get(), title, picture.height_px);
+  int left_px = 0;
+  for (const Photograph& one : photographs) {
+    develop(one, left_px, surface.get());
+    write_title(pen.get(), one.title, left_px, one.picture->height_px);
+    left_px += one.picture->width_px;
+  }
   return write_picture(surface, file);
 }
 
@@ -204,7 +221,7 @@ PngSurface false_colour_surface(const Picture& picture, const std::string& title
   });
   draw_isolux_lines(pen.get(), picture, bottom, top);
   draw_legend(pen.get(), picture, colours.unit, bottom, top);
-  write_title(pen.get(), title, picture.height_px);
+  write_title(pen.get(), title, 0, picture.height_px);
   return surface;
 }
 

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "core/picture/picture.h"
@@ -15,6 +16,15 @@ namespace luxrig {
 /// the file could not be written.
 [[nodiscard]] std::string write_photograph(const Picture& picture, const std::string& title, const PhotographLook& look,
                                            const std::filesystem::path& file);
+
+/// A photograph beside others.
+struct Photograph {
+  const Picture* picture;
+  std::string title;
+  PhotographLook look;
+};
+/// The same, side by side, on the height of the first.
+[[nodiscard]] std::string write_photographs(std::span<const Photograph> photographs, const std::filesystem::path& file);
 
 /// Illuminance in colours of the viridis scale, logarithmic, with lines of equal lux and a legend. max_lx (top of the
 /// scale) defaults to the 99.5th percentile, rounded up to 1, 2 or 5 times a power of ten; the scale spans two decades.

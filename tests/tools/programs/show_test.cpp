@@ -109,6 +109,55 @@ TEST(Render, WritesJpegAndReportsItsExposure) {
   }
 }
 
+// The lamp hangs to the left of where the eye looks from, and the key light is to its right: its picture is the other
+// way round.
+TEST(Compare, ShowsTheObjectInThreeLightsMeteredOnIt) {
+  const Folder folder;
+  const std::string rig = rig_with(folder, ball_obj());
+  std::ofstream(rig, std::ios::app) << R"(
+[[luminaire]]
+name = "bulb"
+model = "isotropic"
+lumens = 800
+[[bus]]
+name = "dmx"
+driver = "sacn"
+[[fixture]]
+name = "left"
+luminaire = "bulb"
+bus = "dmx"
+universe = 1
+address = 1
+position_m = [-4, -2, 0]
+[[point]]
+name = "west"
+position_m = [-1.001, 0, 0]
+normal = [-1, 0, 0]
+goal_lx = 2
+)";
+  const std::string plan = (folder / "plan.json").string();
+  const auto png = folder / "sheet.png";
+  ASSERT_EQ(luxrig::testing::run({program("luxrig"), "solve", rig, "-o", plan}).code, 0);
+  const std::vector<std::string> command = {program("luxrig"), "render", rig,        "-o", png.string(), "--compare",
+                                            "--passes",        "4",      "--eye",    "0",  "-6",         "0",
+                                            "--width",         "300",    "--height", "100"};
+  EXPECT_EQ(luxrig::testing::run(command).code, 2) << "without a plan";
+  auto with_plan = command;
+  with_plan.push_back(plan);
+  const Ran ran = luxrig::testing::run(with_plan);
+  ASSERT_EQ(ran.code, 0) << ran.output;
+  for (const char* title : {"before: ", "after: ", "one key light, 45°"})
+    EXPECT_NE(ran.output.find(title), std::string::npos) << ran.output;
+  const std::string bytes = text_of(png);
+  ASSERT_EQ(bytes.substr(1, 3), "PNG");
+  // Big-endian width and height of the PNG's header.
+  const auto number_at = [&](std::size_t at) {
+    return (static_cast<unsigned char>(bytes[at + 2]) << 8) + static_cast<unsigned char>(bytes[at + 3]);
+  };
+  EXPECT_EQ(number_at(16), 300);
+  EXPECT_EQ(number_at(20), 100);
+}
+
 TEST(Show, RefusesIncompatibleOptions) {
   const Folder folder;
   EXPECT_EQ(show(source("rigs/studio"), "curvatur", folder / "a.png").code, 2);

@@ -22,6 +22,7 @@
 #include "tools/luxrig/commands.h"
 #include "tools/luxrig/open_session.h"
 #include "tools/luxrig/render/dark_picture.h"
+#include "tools/luxrig/render/render_compare.h"
 #include "tools/luxrig/room_view.h"
 #include "tools/terminal/command.h"
 #include "tools/terminal/exposure.h"
@@ -30,8 +31,6 @@
 
 namespace luxrig {
 namespace {
-
-constexpr int kMaxPasses = 4096;
 
 /// That of a plan, after its placed lights are hung; or each fixture at its highest level.
 Checked<HungPlan> look_to_render(const RenderOptions& options, const Rig& rig) {
@@ -89,6 +88,7 @@ int run_render(const RenderOptions& options) {
     return kExitBadInput;
   }
   if (options.show) return run_show(options);
+  if (options.compare) return run_compare(options);
   const auto loaded = load_rig_for_picture(options);
   if (!loaded) return report(loaded.error());
   const Rig& rig = loaded->rig;
@@ -107,7 +107,7 @@ int run_render(const RenderOptions& options) {
   how.threads = options.threads;
   how.wanted_relative_error = options.max_error;
   how.watch.stop = stop_on_signals();
-  how.max_passes = options.passes.value_or(kMaxPasses);
+  how.max_passes = options.passes.value_or(kMostPasses);
   const Progress progress = progress_line("rendering");
   const auto start = std::chrono::steady_clock::now();
   how.after_pass = [&](double done, double) {
@@ -197,8 +197,15 @@ Action declare_render(CLI::App& command) {
            {"domain", ShowWhat::domain},
            {"beams", ShowWhat::beams}})
           ->excludes(with_false_colour);
-  command.add_option("--object", render.object, "with --show: whose relief (else the only one from a mesh file)")
-      ->needs(with_show);
+  auto* with_compare =
+      command
+          .add_flag("--compare", render.compare,
+                    "an object in three lights side by side: as it hangs, as planned, one key light from 45°")
+          ->needs(with_plan)
+          ->excludes(with_show)
+          ->excludes(with_false_colour);
+  auto* with_object = command.add_option("--object", render.object,
+                                         "with --show or --compare: which object (else the only one from a mesh file)");
   command.add_option("--lights", render.lights, "with --show histogram: so many directions are chosen")
       ->check(CLI::Range(1, 64))
       ->needs(with_show);
@@ -219,7 +226,11 @@ Action declare_render(CLI::App& command) {
   command.footer(
       "As a photograph, as a false-colour map of lux, or with --show as a drawing of\n"
       "why its lights are where they are.");
-  return [line, with_plan, with_eye, with_target] {
+  return [line, with_plan, with_eye, with_target, with_object, with_show, with_compare] {
+    if (*with_object && !*with_show && !*with_compare) {
+      fmt::print(stderr, "luxrig render: --object requires --show or --compare\n");
+      return kExitBadInput;
+    }
     RenderOptions options = line->options;
     const auto& eye = line->eye_m;
     const auto& target = line->target_m;

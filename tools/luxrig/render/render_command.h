@@ -16,6 +16,9 @@ namespace luxrig {
 /// Pictures that explain; render_show.h says what each draws.
 enum class ShowWhat { curvature, interest, features, histogram, domain, beams };
 
+/// Samples per pixel after which noise is accepted.
+inline constexpr int kMostPasses = 4096;
+
 struct RenderOptions {
   std::filesystem::path rig;
   std::optional<std::filesystem::path> plan;  ///< none = every fixture at its highest allowed level
@@ -27,6 +30,7 @@ struct RenderOptions {
   std::optional<ShowWhat> show;                     ///< instead of the lit room
   std::optional<std::string> object;                ///< object with the relief; none = the only one from a mesh file
   int lights = 3;                                   ///< directions to choose on the histogram
+  bool compare = false;                             ///< an object in three lights, instead of the room
   Exposure exposure;
   WhiteBalance white_balance;
   std::optional<double> max_lx;  ///< top of the false colour scale; none = from the picture
