@@ -55,7 +55,9 @@ TEST(SeenContrast, SphereUnderOneDistantLightAsInClosedForm) {
     const SeenScore score = seen.score(distant_lux(sphere, seen.samples(), {std::sin(alpha), -std::cos(alpha), 0}));
     const double mean = 2 / (3 * kPi) * (std::sin(alpha) + (kPi - alpha) * std::cos(alpha));
     EXPECT_NEAR(score.mean_lx, mean, 0.015 * mean + 0.002) << alpha_deg;
-    if (kBurntOverMean * mean > 1) EXPECT_EQ(score.burnt_share, 0) << alpha_deg;
+    if (kBurntOverMean * mean > 1) {
+      EXPECT_EQ(score.burnt_share, 0) << alpha_deg;
+    }
     // The part that no light reaches is crushed, and a rim where it grazes.
     const double dark = (1 - std::cos(alpha)) / 2;
     EXPECT_GE(score.crushed_share, dark - 0.01) << alpha_deg;
