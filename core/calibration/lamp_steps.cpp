@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/check.h"
+#include "core/output/dimming.h"
 
 namespace luxrig {
 namespace {
@@ -27,6 +28,10 @@ constexpr int kDeadBands = 30, kTails = 12;
 constexpr double kOfTail = 0.1;
 /// By so much, as a logarithm, any dimmer departs from the law below.
 constexpr double kDeparts = 0.003;
+/// Standard deviation of a dimmer's exponent above the brightest level that was read, from that below.
+constexpr double kGoesOn = 0.1;
+/// Share of its light at which a lamp mostly is.
+constexpr double kInUse = 0.4;
 /// A curve is stated at so many more levels between any two that were read.
 constexpr int kBetween = 3;
 
@@ -80,8 +85,7 @@ DimmerLaw law_of(std::span<const ReadShare> read) {
 
 /// Shares at the levels that were read and between them: by the law, and by what of each reading's distance from it is
 /// more than noise. Brightest first, the top's share as 1.
-MeasuredCurve smooth_curve(std::span<const ReadShare> read) {
-  const DimmerLaw law = law_of(read);
+MeasuredCurve smooth_curve(const DimmerLaw& law, std::span<const ReadShare> read) {
   double beyond_noise = 0;
   for (const ReadShare& at : read.subspan(1))
     beyond_noise += (std::pow(at.log_share - law.log_share(at.level), 2) - at.error * at.error) /
@@ -153,7 +157,7 @@ std::vector<double> levels_together(const Rig& rig, const Eigen::MatrixXd& state
   return {level.begin(), level.end()};
 }
 
-LampCurve curve_of(std::span<const ReadAtLevel> brightest_first) {
+LampCurve curve_of(std::span<const ReadAtLevel> brightest_first, double used_over_brightest) {
   LampCurve curve;
   if (brightest_first.size() < 2) return curve;
   const ReadAtLevel& full = brightest_first.front();
@@ -175,12 +179,18 @@ LampCurve curve_of(std::span<const ReadAtLevel> brightest_first) {
     curve.known_from = read.level;
   }
   if (!(curve.error > 0)) return {};
-  MeasuredCurve of_level = smooth_curve(shares);
+  const DimmerLaw law = law_of(shares);
+  MeasuredCurve of_level = smooth_curve(law, shares);
   std::reverse(of_level.begin(), of_level.end());
-  // Above what a limit lets it reach, the maker's curve is all there is.
-  const double top = of_level.back().first;
-  for (auto& entry : of_level) entry.second *= top;
-  if (top < 1) of_level.emplace_back(1, 1);
+  // Above what a limit lets it reach, a dimmer goes on as it does below.
+  if (law.top < 1) {
+    const double top = std::exp(-law.log_share(1));
+    for (auto& entry : of_level) entry.second *= top;
+    of_level.emplace_back(1, 1);
+    const double used_level =
+        level_of_share(of_level, std::clamp(kInUse, top, std::max(top, top * used_over_brightest)));
+    curve.error_in_use = std::hypot(curve.error_in_use, kGoesOn * std::log(used_level / law.top));
+  }
   curve.of_level = std::move(of_level);
   return curve;
 }

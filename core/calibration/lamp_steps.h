@@ -58,7 +58,8 @@ struct LampCurve {
 };
 
 /// brightest_first: all by the same meter at the same place. Readings that are too uncertain for a curve are left out.
-/// Of a lamp that a limit keeps below full level, the maker's curve holds above.
-[[nodiscard]] LampCurve curve_of(std::span<const ReadAtLevel> brightest_first);
+/// Above the brightest level, if that is below full, a dimmer is taken to go on as it does below.
+/// used_over_brightest: light that it may give in use, over that at its brightest here; ≥ 1.
+[[nodiscard]] LampCurve curve_of(std::span<const ReadAtLevel> brightest_first, double used_over_brightest = 1);
 
 }  // namespace luxrig

@@ -164,6 +164,14 @@ double MeterRun::most_lux(std::size_t point, std::size_t fixture) const {
   return over ? kElsewhere * *over * stated_lx * level : stated_lx * most_share(level);
 }
 
+double MeterRun::room_below_limits(std::size_t fixture) const {
+  double room = std::numeric_limits<double>::infinity();
+  for (std::size_t p = 0; p < rig_->points.size(); ++p)
+    if (const double most_lx = most_lux(p, fixture); rig_->points[p].max_lx && most_lx > 0)
+      room = std::min(room, *rig_->points[p].max_lx / most_lx);
+  return room;
+}
+
 std::optional<double> MeterRun::brighter_level(std::size_t fixture) const {
   if (!over_stated(fixture)) return std::nullopt;
   const double level = level_alone(fixture);
@@ -175,11 +183,8 @@ std::optional<double> MeterRun::brighter_level(std::size_t fixture) const {
             std::log(light_alone(fixture, *meter)->lux / dim->lux) / std::log(level / taken_[first].sent[fixture]) +
                 kSteeper,
             1.0, kSteepest);
-  double room = std::numeric_limits<double>::infinity();
-  for (std::size_t p = 0; p < rig_->points.size(); ++p)
-    if (const double most_lx = most_lux(p, fixture); rig_->points[p].max_lx && most_lx > 0)
-      room = std::min(room, *rig_->points[p].max_lx / most_lx);
-  return std::min(rig_->max_level(rig_->fixtures[fixture]), level * std::pow(room, 1 / steepness));
+  return std::min(rig_->max_level(rig_->fixtures[fixture]),
+                  level * std::pow(room_below_limits(fixture), 1 / steepness));
 }
 
 void MeterRun::plan_brighter() {
@@ -268,7 +273,7 @@ void MeterRun::find_curves() {
           {taken_[light].sent[lamps[k]], {shares[k].value * full_lx, shares[k].standard_error * full_lx}});
     }
   }
-  for (std::size_t f = 0; f < read.size(); ++f) curves_[f] = curve_of(read[f]);
+  for (std::size_t f = 0; f < read.size(); ++f) curves_[f] = curve_of(read[f], room_below_limits(f));
 }
 
 std::vector<LightReading> MeterRun::readings() const {

@@ -56,6 +56,8 @@ class MeterRun {
   [[nodiscard]] std::optional<double> over_stated(std::size_t fixture) const;
   /// The most light that it gives at its brightest at this point.
   [[nodiscard]] double most_lux(std::size_t point, std::size_t fixture) const;
+  /// How many times as bright as at its brightest limits would let it be; infinite without one.
+  [[nodiscard]] double room_below_limits(std::size_t fixture) const;
   /// The level that its readings allow, however steep its dimmer; none = they do not tell.
   [[nodiscard]] std::optional<double> brighter_level(std::size_t fixture) const;
   /// The luxmeter that shows it best; none = none does well.

@@ -31,12 +31,26 @@ TEST(LampCurve, OfAPowerIsThatPowerBetweenItsReadingsToo) {
   }
 }
 
-TEST(LampCurve, OfALampThatALimitKeepsLowFollowsTheMakersAbove) {
-  const LampCurve curve = curve_of(power_read(2, 0.4, 0.005));
-  EXPECT_NEAR(share_at_level(curve.of_level, 0.4), 0.4, 1e-12)
-      << "the light at the brightest step is the output's part";
-  EXPECT_NEAR(share_at_level(curve.of_level, 0.2), 0.4 * 0.25, 1e-12);
-  EXPECT_EQ(share_at_level(curve.of_level, 1), 1);
+TEST(LampCurve, OfALampThatALimitKeepsLowGoesOnAsBelow) {
+  for (const double exponent : {0.8, 1.0, 2.0}) {
+    const LampCurve curve = curve_of(power_read(exponent, 0.4, 0.005));
+    for (const double level : {0.03, 0.2, 0.4}) {
+      EXPECT_NEAR(share_at_level(curve.of_level, level), std::pow(level, exponent), 1e-9);
+    }
+    EXPECT_EQ(share_at_level(curve.of_level, 1), 1);
+    EXPECT_NEAR(curve.error_in_use, 0.005 * std::sqrt(2.0), 1e-12) << "used where it was read";
+  }
+  // What lies above is known the worse, the farther it is.
+  double before = curve_of(power_read(2, 0.2, 0.005)).error_in_use;
+  for (const double used : {2.0, 5.0, 9.0}) {
+    const double error = curve_of(power_read(2, 0.2, 0.005), used).error_in_use;
+    EXPECT_NEAR(error, std::hypot(0.005 * std::sqrt(2.0), 0.1 * std::log(std::sqrt(used))), 1e-9) << used;
+    EXPECT_GT(error, before);
+    before = error;
+  }
+  EXPECT_NEAR(curve_of(power_read(2, 0.2, 0.005), 1e9).error_in_use,
+              curve_of(power_read(2, 0.2, 0.005), 10).error_in_use, 1e-12)
+      << "lamps are seldom at more than 0.4 of their light";
 }
 
 TEST(LampCurve, IsNotFoundFromReadingsThatAreTooUncertain) {
