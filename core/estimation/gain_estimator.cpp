@@ -211,6 +211,8 @@ void GainEstimator::estimate(Time now) {
   gain_ = VectorXd::Constant(columns, prior_gain_);
   gain_error_ = prior_gain_sd_.transpose();
   factor_ = MatrixXd::Constant(meters, columns, prior_gain_);
+  unexplained_ = VectorXd::Zero(columns);
+  factor_beyond_ = MatrixXd::Zero(meters, columns);
   MatrixXd local_variance = prior_local_sd_.cwiseAbs2().replicate(meters, 1);
   for (Index i = 0; i < meters; ++i)
     for (Index j = 0; j < columns; ++j)
@@ -253,12 +255,28 @@ void GainEstimator::estimate(Time now) {
       for (Index k = 0; k < count; ++k)
         if (static_cast<Index>(evidence_[static_cast<std::size_t>(k)].luxmeter) == i)
           with_factor[k] += local_variance(i, j) * light(k, j);
-      factor_(i, j) = std::clamp(prior_gain_ + with_factor.dot(weight), gain_min_ / local_, gain_max_ * local_);
+      const double factor = prior_gain_ + with_factor.dot(weight);
+      factor_(i, j) = std::clamp(factor, gain_min_ / local_, gain_max_ * local_);
+      factor_beyond_(i, j) = factor - factor_(i, j);
       const double variance = gain_variance + local_variance(i, j) - with_factor.dot(innovation_.solve(with_factor));
       factor_error_(i, j) = contradiction[i] * std::sqrt(std::max(0.0, variance));
     }
   }
+  find_unexplained(local_variance);
   bound_gains();
+}
+
+void GainEstimator::find_unexplained(const MatrixXd& local_variance) {
+  constexpr double kMuchOfItsLight = 0.3, kErrors = 2;
+  for (Index i = 0; i < meter_.rows(); ++i) {
+    const Evidence* const lesson = latest(static_cast<std::size_t>(i));
+    if (!lesson) continue;
+    const RowVectorXd lux = meter_.row(i).cwiseProduct(lesson->level.transpose());
+    for (Index j = 0; j < lux.size(); ++j)
+      if (lux[j] > kMuchOfItsLight * lux.sum())
+        unexplained_[j] = std::max(unexplained_[j], std::abs(factor_(i, j) + factor_beyond_(i, j) - gain_[j]) -
+                                                        kErrors * std::sqrt(local_variance(i, j)));
+  }
 }
 
 Prediction GainEstimator::predict(const Row& row, const VectorXd& level) const {
@@ -281,7 +299,18 @@ Prediction GainEstimator::predict(const Row& row, const VectorXd& level) const {
 }
 
 Prediction GainEstimator::at_point(std::size_t point, std::span<const double> level) const {
-  return predict(row_of_point(point), as_given(level));
+  const VectorXd given = as_given(level);
+  Prediction prediction = predict(row_of_point(point), given);
+  const auto p = static_cast<Index>(point);
+  double beyond_lx = 0;
+  if (confirmed(point)) {
+    const auto i = static_cast<Index>(*meter_of_point_[point]);
+    beyond_lx = meter_.row(i).cwiseProduct(factor_beyond_.row(i)).dot(given);
+  } else {
+    beyond_lx = point_.row(p).cwiseProduct(unexplained_.transpose()).dot(given);
+  }
+  prediction.standard_error_lx = std::hypot(prediction.standard_error_lx, beyond_lx);
+  return prediction;
 }
 
 Prediction GainEstimator::at_meter(std::size_t luxmeter, std::span<const double> level) const {

@@ -272,6 +272,7 @@ class GainEstimator {
   void learn(const LuxReading& reading, const Eigen::VectorXd& level);
   void estimate(Time now);
   void bound_gains();
+  void find_unexplained(const Eigen::MatrixXd& local_variance);
   /// Per luxmeter, at least 1: how much its lessons differ from each other beyond their stated errors, whatever factor
   /// they have in common (Birge ratio: square root of χ² per degree of freedom). Some were wrong then: a lamp did not
   /// respond, or somebody shaded the meter. covariance: of the evidence; the others: per piece of it [lx].
@@ -310,6 +311,10 @@ class GainEstimator {
   Eigen::LDLT<Eigen::MatrixXd> innovation_;  ///< covariance of the evidence
   Eigen::VectorXd gain_, gain_error_, upper_gain_;
   Eigen::MatrixXd factor_, factor_error_;  ///< x: luxmeters × columns
+  Eigen::MatrixXd factor_beyond_;          ///< by how much the evidence asks for more, or less, than the bounds of x
+  /// Per column: by how much more x at a luxmeter that it lights differs from its gain than local errors explain. So it
+  /// may be elsewhere.
+  Eigen::VectorXd unexplained_;
 };
 
 }  // namespace luxrig
