@@ -20,6 +20,9 @@ constexpr double kUnsettled = 0.005;
 /// A lag of first order describes the meter if what it leaves is at most so many times its noise.
 constexpr double kFits = 1.5;
 constexpr std::size_t kFewest = 4;  ///< samples at the end, and in the dark
+/// Without a sample for so many periods, and for so long, the meter or its line was held up. Then it is not known how late
+/// its next samples are.
+constexpr double kGapPeriods = 4, kGap_s = 1;
 
 struct SampleScatter {
   double mean = 0, deviation = 0;
@@ -182,6 +185,19 @@ double ReadingLog::whole_at_s() const {
   return lights_.empty() ? 0 : lights_.back().left_s + latest;
 }
 
+bool ReadingLog::held_up(std::size_t luxmeter, const Span& light) const {
+  const MeterTiming& timing = *timing_[luxmeter];
+  const double longest_s = std::max(kGapPeriods * timing.period_s, kGap_s);
+  double last_s = light.arrived_s;
+  for (const TimedLux& sample : samples_[luxmeter]) {
+    if (sample.at_s <= light.arrived_s) continue;
+    if (std::min(sample.at_s, light.left_s + timing.delay_s) - last_s > longest_s) return true;
+    if (sample.at_s > light.left_s + timing.delay_s) return false;
+    last_s = sample.at_s;
+  }
+  return light.left_s + timing.delay_s - last_s > longest_s;
+}
+
 std::vector<double> ReadingLog::samples_of(std::size_t luxmeter, const Span& light) const {
   std::vector<double> lux;
   const MeterTiming& timing = *timing_[luxmeter];
@@ -201,7 +217,7 @@ std::vector<std::vector<std::optional<SteadyReading>>> ReadingLog::readings() co
     const double noise_squared = relative_noise_squared(lux);
     const double freedom = noise_squared > 0 ? kFreedomOfNoise : 0;
     for (std::size_t k = 0; k < lights_.size(); ++k) {
-      if (lux[k].size() < kSteadySamples) continue;
+      if (lux[k].size() < kSteadySamples || held_up(m, lights_[k])) continue;
       const Samples samples = of(lux[k]);
       const auto count = static_cast<double>(lux[k].size());
       const double variance = ((count - 1) * samples.variance + freedom * noise_squared * samples.mean * samples.mean) /

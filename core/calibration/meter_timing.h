@@ -43,7 +43,7 @@ class ReadingLog {
 
   /// When every meter has shown the last light to its end.
   [[nodiscard]] double whole_at_s() const;
-  /// Per light, per luxmeter; none = fewer than kSteadySamples, not steady, or no timing. A meter's noise, as a share of the
+  /// Per light, per luxmeter; none = fewer than kSteadySamples, not steady, samples held up on their way, or no timing. A meter's noise, as a share of the
   /// light, is taken to be alike in all its readings: a few samples alone do not tell it.
   [[nodiscard]] std::vector<std::vector<std::optional<SteadyReading>>> readings() const;
 
@@ -51,6 +51,8 @@ class ReadingLog {
   struct Span {
     double arrived_s, left_s;
   };
+  /// Its samples paused while this light was there.
+  [[nodiscard]] bool held_up(std::size_t luxmeter, const Span& light) const;
   [[nodiscard]] std::vector<double> samples_of(std::size_t luxmeter, const Span& light) const;
 
   std::vector<std::optional<MeterTiming>> timing_;

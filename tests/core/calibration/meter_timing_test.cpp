@@ -154,5 +154,24 @@ TEST(ReadingLog, LightThatWandersIsNotRead) {
   EXPECT_DOUBLE_EQ(readings[1][0]->lux, 200);
 }
 
+// A meter that is as late as always, but whose samples stop for a while: what comes then may be any light.
+TEST(ReadingLog, ALightDuringWhichSamplesWereHeldUpIsNotRead) {
+  for (const double pause_from_s : {10.2, 12.0, 14.6}) {
+    ReadingLog log({MeterTiming{0.2, 0.5, 0.1}});
+    for (int k = 0; k < 6; ++k) log.light(5.0 * k, 5.0 * k + 4.5);
+    for (int k = 0; k < 320; ++k) {
+      const double at_s = 0.1 * k;
+      // Held up for two seconds, and then as late as that.
+      if (at_s < pause_from_s || at_s > pause_from_s + 2) log.sample(0, {at_s, 100.0 + std::floor(at_s / 5)});
+    }
+    const auto readings = log.readings();
+    for (std::size_t k = 0; k < readings.size(); ++k) {
+      const double to_s = 5.0 * static_cast<double>(k) + 4.7;
+      const double paused_s = std::min(to_s, pause_from_s + 2) - std::max(5.0 * static_cast<double>(k), pause_from_s);
+      EXPECT_EQ(readings[k][0].has_value(), !(paused_s > 1)) << k << ", pause from " << pause_from_s;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace luxrig

@@ -23,6 +23,9 @@ constexpr int kPlacesOfCameras = 80;
 /// A lamp is not photographed by a camera that sees less than this share of the light that another sees of it.
 constexpr double kTellsLittle = 0.03;
 
+/// A lamp has come to rest so long after its level has been sent.
+constexpr double kLampSettles_s = 0.3;
+
 /// A picture takes seconds. The light is held meanwhile.
 Result<MergedPicture> look_while_held(CameraEye& eye, DaemonRig& daemon, const std::stop_token& stop) {
   auto taken = std::async(std::launch::async, [&] { return eye.look(stop); });
@@ -168,6 +171,7 @@ Result<MeasuredByCameras> measure_by_cameras(const Session& stated, const Camera
     };
     const auto sent = daemon.light(*level, stop);
     if (!sent) return during(sent.error());
+    if (const auto watched = daemon.watch(kLampSettles_s, stop); !watched) return during(watched.error());
     const auto lamp = first.lamp_of_next();
     for (Photographing* const one : left) {
       if (lamp && !one->sees[*lamp]) {

@@ -25,6 +25,8 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
 constexpr auto kPoll = 100ms;
+/// After so long without a look, the machine is busy with other things: what was seen then may be late.
+constexpr double kStalled_s = 0.5;
 constexpr double kLongestWait_s = 30;
 /// A rig that may be measured from its safe look leaves it within this.
 constexpr double kLeavesSafe_s = 1.5;
@@ -192,7 +194,7 @@ Result<std::vector<double>> DaemonRig::light(std::span<const double> level, cons
   const double begun_s = now_s();
   arrived_at_s_ = begun_s;
   std::vector<double> sent, before;
-  for (;;) {
+  for (double looked_s = begun_s;;) {
     if (stop.stop_requested()) return tl::unexpected(stopped());
     std::this_thread::sleep_for(kPoll);
     const auto now = look();
@@ -213,8 +215,10 @@ Result<std::vector<double>> DaemonRig::light(std::span<const double> level, cons
     }
     if (sent.size() != level.size())
       return tl::unexpected(fault(Cause::invalid, "the daemon's rig has other fixtures than the file"));
-    if (!arrived || sent != before) arrived_at_s_ = now_s();
-    if (arrived && sent == before && (as_asked || now_s() - arrived_at_s_ >= kLimitStands_s)) {
+    const bool stalled = now_s() - looked_s > kStalled_s;
+    looked_s = now_s();
+    if (!arrived || sent != before || stalled) arrived_at_s_ = now_s();
+    if (arrived && sent == before && !stalled && (as_asked || now_s() - arrived_at_s_ >= kLimitStands_s)) {
       for (std::size_t f = 0; f < sent.size(); ++f) sent[f] = level_of_share(dimmed_as_[f].measured_curve, sent[f]);
       return sent;
     }
