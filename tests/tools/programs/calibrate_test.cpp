@@ -105,13 +105,29 @@ TEST(CalibrateOverTheWire, OfASimulatedRigItBringsRigAndDaemonWithIt) {
   // Below those that the kernel gives to others.
   const int port = 21000 + ::getpid() % 9000;
   std::vector<std::string> words = calibrate(path, port);
-  for (const char* word : {"--sim", "--sim-seed", "5"}) words.emplace_back(word);
+  for (const char* word : {"--sim", "--sim-seed", "5", "--meters", "--hand", "--sim-hand", "2"})
+    words.emplace_back(word);
   const Ran measured = run(words, 180s);
   ASSERT_EQ(measured.code, 0) << measured.output;
   EXPECT_NE(measured.output.find("--sim --sim-deviations mild --sim-seed 5"), std::string::npos) << measured.output;
   const json calibration = json::parse(text_of(folder / "room" / "calibration.json"), nullptr, false);
   ASSERT_TRUE(calibration.is_object());
   EXPECT_EQ(calibration["simulated"], "mild, seed 5");
+  // Where the simulated hand held the luxmeter, the light of the brightest lamp is known as well as by that.
+  const std::regex held("Hold the luxmeter at \"([^\"]*)\"");
+  int places = 0;
+  for (auto at = std::sregex_iterator(measured.output.begin(), measured.output.end(), held);
+       at != std::sregex_iterator(); ++at, ++places) {
+    double brightest_lx = 0, error_lx = 0;
+    for (const json& lux : calibration["points"][(*at)[1].str()])
+      if (lux[0].get<double>() > brightest_lx) {
+        brightest_lx = lux[0];
+        error_lx = lux[1];
+      }
+    EXPECT_GT(brightest_lx, 0) << (*at)[1];
+    EXPECT_LT(error_lx, 0.03 * brightest_lx) << (*at)[1];
+  }
+  EXPECT_TRUE(places == 1 || places == 2) << measured.output;
   const auto daemon = daemon_on(port);
   EXPECT_FALSE(daemon && http_get(*daemon, "/api/status")) << "the daemon ends with it";
 }

@@ -1,21 +1,15 @@
 // calibrate: what the rig file says wrongly, measured by luxmeters that hang or are held, while the daemon runs.
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <chrono>
 #include <functional>
 #include <memory>
 #include <utility>
 
-#include "core/calibration/ageing.h"
-#include "core/calibration/calibration_report.h"
 #include "core/calibration/meter_run.h"
 #include "core/calibration/open_run.h"
 #include "core/calibration/rig_light.h"
-#include "core/output/dimming.h"
-#include "core/tasks/rig_version.h"
 #include "tools/command_line/installed.h"
 #include "tools/luxrig/calibrate/by_camera.h"
 #include "tools/luxrig/calibrate/by_hand.h"
@@ -24,6 +18,7 @@
 #include "tools/luxrig/calibrate/daemon_rig.h"
 #include "tools/luxrig/calibrate/head_motions.h"
 #include "tools/luxrig/calibrate/heads_by_meters.h"
+#include "tools/luxrig/calibrate/keep_result.h"
 #include "tools/luxrig/calibrate/measuring.h"
 #include "tools/luxrig/calibrate/simulated_run.h"
 #include "tools/luxrig/commands.h"
@@ -33,7 +28,6 @@
 #include "tools/process/files.h"
 #include "tools/process/sim_process.h"
 #include "tools/terminal/command.h"
-#include "tools/terminal/table.h"
 #include "tools/terminal/terminal_watch.h"
 
 namespace luxrig {
@@ -53,30 +47,6 @@ struct CalibrateArguments {
   std::optional<std::filesystem::path> meter_file;  ///< of the meter in the hand
   std::optional<std::filesystem::path> file;        ///< none = calibration.json beside the rig file
 };
-
-/// Share of full light at which the goals' error is told.
-constexpr double kLevelOfUse = 0.4;
-
-std::string utc_now() {
-  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now));
-}
-
-/// The old file stays beside the new one, under the time it was made.
-Result<void> keep_old(const std::filesystem::path& file) {
-  std::error_code ignored;
-  if (!std::filesystem::exists(file, ignored)) return {};
-  const auto text = read_file(file);
-  const auto old =
-      text ? calibration_from_json(*text, file.string()) : Checked<Calibration>(tl::unexpected(text.error()));
-  std::string stamp = old ? old->made : utc_now() + "-unreadable";
-  std::erase_if(stamp, [](char c) { return c == ':' || c == '/'; });
-  const auto kept = file.parent_path() / fmt::format("{}-{}{}", file.stem().string(), stamp, file.extension().string());
-  std::error_code error;
-  std::filesystem::copy_file(file, kept, std::filesystem::copy_options::overwrite_existing, error);
-  if (!error) return {};
-  return tl::unexpected(Fault{Cause::system, "", kept.string() + " cannot be written: " + error.message(), {}});
-}
 
 std::function<void(std::size_t)> progress_of(const char* what, std::size_t steps) {
   return [steps, progress = progress_line(what)](std::size_t done) {
@@ -139,13 +109,6 @@ Result<std::vector<MeasuredHead>> by_heads(const Measuring& measuring) {
   return heads;
 }
 
-/// 0 = the rig as found cannot be built: what is known of its points will not be used.
-std::uint64_t version_as_found(const Session& stated, const Calibration& found) {
-  auto rig = calibrated(stated.rig, found, "what was found");
-  const auto session = rig ? session_of(std::move(*rig)) : tl::unexpected(rig.error());
-  return session ? version_of(session->rig, session->scene).light : 0;
-}
-
 std::string world_of(const HttpPeer& sim_control) {
   const std::string world = ask_world(sim_control);
   return world.empty() ? "one that does not say which" : world;
@@ -160,70 +123,22 @@ std::optional<Calibration> found_before(const std::filesystem::path& file, const
   return std::move(*before);
 }
 
-/// Of each camera that measured: the light of the look that the daemon went back to; of every lamp at its level of use if
-/// that look is dark.
-std::vector<LuxMap> maps_of(const Measuring& measuring, std::span<const double> look, const Calibration& found,
-                            const ComputeOptions& compute) {
-  std::vector<double> level(look.begin(), look.end());
-  const bool lit = std::any_of(level.begin(), level.end(), [](double one) { return one > 0; });
-  if (!lit)
-    for (std::size_t f = 0; f < level.size(); ++f) level[f] = level_of_share(measuring.curves[f].of_level, kLevelOfUse);
-  auto maps = lux_maps_of(measuring.session, measuring.cameras, measuring.seen, measuring.light, measuring.curves,
-                          level, found, compute);
-  if (!maps) {  // what was measured is still worth its report
-    fmt::print(stderr, "luxrig: there is no map of the light: {}\n", maps.error().detail);
-    return {};
-  }
-  for (LuxMap& map : *maps)
-    map.light = lit ? "the look in force" : fmt::format("every lamp at {:.0f} % of its light", 100 * kLevelOfUse);
-  return std::move(*maps);
+/// One instrument more for each lamp: how its light follows its level. The first of them.
+std::size_t add_slopes(const Rig& rig, LightPriors& priors) {
+  const auto first = static_cast<std::size_t>(priors.log_meter.size());
+  const auto fixtures = static_cast<Eigen::Index>(rig.fixtures.size());
+  priors.log_meter.conservativeResize(priors.log_meter.size() + fixtures);
+  priors.log_meter.tail(fixtures).setConstant(OpenRun::kSlopeError);
+  return first;
 }
 
-/// calibration.json -> calibration-report.html
-std::filesystem::path beside(const std::filesystem::path& file, const std::string& ending) {
-  return file.parent_path() / (file.stem().string() + ending);
-}
-
-/// Of LightUnknowns' instruments, one that stands for a lamp's slope.
-std::string slope_words(const LightUnknowns& known, std::size_t instrument) {
-  const double slope = known.meter_gain(instrument);
-  return fmt::format("1 % of level changes its light by {:.2f} ± {:.2f} %", slope,
-                     known.meter_gain_standard_error(instrument));
-}
-
-void print_report(const Measuring& measuring, const GoalError& before, const CalibrationReport& told) {
-  const Rig& rig = measuring.session.rig;
-  const LightUnknowns& known = measuring.light.known();
-  const char* note = "";
-  Table lamps({"fixture", ">output", ">± se", ">moved cm", ">± se", ">turned °", ">± se", "dimmer"});
-  for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
-    const Eigen::VectorXd off = known.mount(f), error = known.mount_standard_error(f);
-    const MeasuredCurve& curve = measuring.curves[f].of_level;
-    const bool measured = known.gain_is_measured(f);
-    const bool sloped = std::find(measuring.slope_of.begin(), measuring.slope_of.end(), f) != measuring.slope_of.end();
-    if (measured && known.read_at(f) < 1)
-      note = "* as its light says at the level where it was read; at full light it may be another\n";
-    lamps.row({rig.fixtures[f].name,
-               measured ? fmt::format("{:.3f}{}", known.gain(f), known.read_at(f) < 1 ? " *" : "") : "",
-               measured ? fmt::format("{:.3f}", known.gain_standard_error(f)) : "not measured",
-               fmt::format("{:.1f}", 100 * off.head<3>().norm()), fmt::format("{:.1f}", 100 * error.head<3>().norm()),
-               fmt::format("{:.1f}", deg_from_rad(off.tail<3>().norm())),
-               fmt::format("{:.1f}", deg_from_rad(error.tail<3>().norm())),
-               sloped          ? slope_words(known, *measuring.first_slope + f)
-               : curve.empty() ? "not measured"
-                               : fmt::format("{:.0f} % of its light at half level", 100 * share_at_level(curve, 0.5))});
-  }
-  for (const CalibratedFixture& fixture : told.found.fixtures)
-    if (const std::string aged = ageing_words(fixture); !aged.empty())
-      fmt::print("\"{}\" gives {}.\n", fixture.name, aged);
-  fmt::print("{}{}\nThe light at {} goals was known to {}. Now it is known to {}.\n", lamps.text(), note, before.goals,
-             known_words(before), known_words(measuring.light.error_of_goals(measuring.levels.use)));
-  if (told.variance) fmt::print("What is left of its variance: {}.\n", budget_words(told.variance));
-  if (told.to_settle.empty()) return;
-  std::string names;
-  for (const std::string& point : told.to_settle) names += (names.empty() ? "\"" : ", \"") + point + "\"";
-  fmt::print("A luxmeter at {} would settle most of the rest: luxrig calibrate{} --hand.\n", names,
-             rig.luxmeters.empty() ? "" : " --meters");
+/// What the arguments ask for and the rig cannot give; empty = nothing.
+std::string cannot_measure(const CalibrateArguments& arguments, const Rig& rig, bool meters) {
+  if (meters && rig.luxmeters.empty())
+    return "the rig has no [[luxmeter]] to measure with; --hand asks for readings of one in your hand";
+  if (arguments.hours == "open" && (arguments.hand || !arguments.cameras.empty()))
+    return "by hand and by camera, lamps go on alone: that takes --hours closed";
+  return "";
 }
 
 int run_calibrate(const CalibrateArguments& arguments) {
@@ -232,14 +147,9 @@ int run_calibrate(const CalibrateArguments& arguments) {
   if (!session) return report(session.error());
   const Rig& rig = session->rig;
   const bool meters = arguments.meters || (!arguments.hand && arguments.cameras.empty());
-  if (meters && rig.luxmeters.empty()) {
-    fmt::print(stderr,
-               "luxrig: the rig has no [[luxmeter]] to measure with; --hand asks for readings of one in your hand\n");
-    return kExitBadInput;
-  }
   const bool open = arguments.hours == "open";
-  if (open && (arguments.hand || !arguments.cameras.empty())) {
-    fmt::print(stderr, "luxrig: by hand and by camera, lamps go on alone: that takes --hours closed\n");
+  if (const std::string why = cannot_measure(arguments, rig, meters); !why.empty()) {
+    fmt::print(stderr, "luxrig: {}\n", why);
     return kExitBadInput;
   }
   std::optional<SimulatedRun> simulated;
@@ -265,13 +175,7 @@ int run_calibrate(const CalibrateArguments& arguments) {
     if (!seen) return report(seen.error());
     views = std::move(*seen);
   }
-  std::optional<std::size_t> first_slope;
-  if (open) {
-    first_slope = static_cast<std::size_t>(priors.log_meter.size());
-    const auto fixtures = static_cast<Eigen::Index>(rig.fixtures.size());
-    priors.log_meter.conservativeResize(priors.log_meter.size() + fixtures);
-    priors.log_meter.tail(fixtures).setConstant(OpenRun::kSlopeError);
-  }
+  const auto first_slope = open ? std::optional(add_slopes(rig, priors)) : std::nullopt;
   const Session& with_places = views.session ? *views.session : *session;
   auto light = RigLight::of(with_places, priors, compute);
   if (!light) return report(light.error());
@@ -312,38 +216,14 @@ int run_calibrate(const CalibrateArguments& arguments) {
     fmt::print(stderr, "luxrig: nothing was measured, so nothing is written\n");
     return kExitFailed;
   }
-  if (auto kept = keep_old(file); !kept) return report(kept.error());
-  Calibration found = calibration_of(*session, *light, measuring.curves, utc_now());
-  found.simulated = world;
-  if (earlier) keep_first_outputs(*earlier, found);
-  put_heads(rig, heads, earlier ? &*earlier : nullptr, found);
-  put_cameras(rig, views, measuring.seen, *light, earlier ? &*earlier : nullptr, found);
-  found.as_found = version_as_found(*session, found);
-  if (auto written = write_file(file, to_json(found)); !written) return report(written.error());
-  CalibrationReport told = report_of(with_places, before, *light, std::move(found), kLevelOfUse, measuring.no_points());
-  if (meters) told.by.emplace_back("luxmeters that hang");
-  for (std::size_t k = 0; k < measuring.seen.each.size(); ++k) {
-    if (!measuring.seen.each[k]) continue;
-    told.by.emplace_back("camera \"" + arguments.cameras[k] + "\"");
-    told.seen.push_back({arguments.cameras[k], measuring.seen.each[k]->overflow});
-  }
-  if (arguments.hand) told.by.emplace_back("a luxmeter in the hand");
-  if (seen) {
-    told.variance = budget_of_goals(rig, light->known(), measuring.levels.use, views.instruments());
-    told.maps = maps_of(measuring, *look, told.found, compute);
-  }
-  const auto page = beside(file, "-report.html");
-  std::vector<std::pair<std::filesystem::path, std::string>> files{{page, to_html(told)},
-                                                                   {beside(file, "-report.json"), to_json(told)}};
-  for (std::size_t k = 0; k < told.maps.size(); ++k) {
-    const std::string which = k == 0 ? "" : fmt::format("-{}", k + 1);
-    files.emplace_back(beside(file, "-lux" + which + ".png"), told.maps[k].lux_png);
-    files.emplace_back(beside(file, "-lux-error" + which + ".png"), told.maps[k].error_png);
-  }
-  for (const auto& [name, bytes] : files)
-    if (auto written = write_file(name, bytes); !written) return report(written.error());
-  print_report(measuring, before.error_of_goals(measuring.levels.use), told);
-  fmt::print("Written: {}\nHow good it is, as a page: {}\n{}\n", file.string(), page.string(),
+  std::vector<std::string> by;
+  if (meters) by.emplace_back("luxmeters that hang");
+  for (std::size_t k = 0; k < measuring.seen.each.size(); ++k)
+    if (measuring.seen.each[k]) by.push_back("camera \"" + arguments.cameras[k] + "\"");
+  if (arguments.hand) by.emplace_back("a luxmeter in the hand");
+  const auto page = keep_result({measuring, with_places, before, heads, *look, file, world, earlier, by}, compute);
+  if (!page) return report(page.error());
+  fmt::print("Written: {}\nHow good it is, as a page: {}\n{}\n", file.string(), page->string(),
              arguments.file ? "It is in use once it lies beside the rig file, as calibration.json."
              : arguments.sim.start
                  ? fmt::format("Light this simulated rig by it: luxrig run {} --sim --sim-deviations {} --sim-seed {}",

@@ -16,6 +16,9 @@
 
 namespace luxrig {
 
+/// Share of full light at which the goals' error is told.
+inline constexpr double kLevelOfUse = 0.4;
+
 /// A lamp that is off has this level instead of none, where its level is taken to be read.
 inline constexpr double kDimmestLevel = 0.01;
 
