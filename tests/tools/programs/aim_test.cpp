@@ -40,7 +40,7 @@ TEST(Aim, BringsOutTheFriezeWithinItsLimitsAndEvaluateAgrees) {
   const Ran lit = luxrig::testing::run({program("luxrig"), "evaluate", source("rigs/frieze"), "--levels",
                                         (folder / "plan.json").string(), "--max-error", "0.03", "--json"});
   ASSERT_EQ(lit.code, 0) << lit.output;
-  const json seen = json::parse(lit.output.substr(lit.output.find("{\n")), nullptr, false);
+  const json seen = json_in(lit);
   for (std::size_t i = 0; i < plan["points"].size(); ++i) {
     const double lux = plan["points"][i]["lux"].get<double>();
     EXPECT_NEAR(seen["points"][i]["lux"].get<double>(), lux, 0.1 * lux + 0.5) << plan["points"][i];
@@ -242,7 +242,7 @@ contrast = "lux"
   const Ran lit = luxrig::testing::run(
       {program("luxrig"), "evaluate", rig, "--levels", (folder / "plan.json").string(), "--model", "direct", "--json"});
   ASSERT_EQ(lit.code, 0) << lit.output;
-  const json seen = json::parse(lit.output.substr(lit.output.find("{\n")), nullptr, false);
+  const json seen = json_in(lit);
   EXPECT_NEAR(seen["points"][0]["lux"].get<double>(), plan["points"][0]["lux"].get<double>(), 1e-3);
 }
 

@@ -43,11 +43,6 @@ class SpoiltRoom {
   std::string text_;
 };
 
-json json_in(const Ran& ran) {
-  const auto begin = ran.output.find("{\n");
-  return begin == std::string::npos ? json() : json::parse(ran.output.substr(begin), nullptr, false);
-}
-
 constexpr const char* kInsideADesk = R"([[point]]
 name = "inside"
 position_m = [1.8, 2.6, 0.4]

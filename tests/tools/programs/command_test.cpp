@@ -10,17 +10,11 @@
 namespace luxrig::testing {
 namespace {
 
-/// The printed JSON, after the progress lines of a slow machine.
-json json_of(const Ran& ran) {
-  const auto begin = ran.output.find("{\n");
-  return begin == std::string::npos ? json() : json::parse(ran.output.substr(begin), nullptr, false);
-}
-
 TEST(Commands, EvaluateJsonHasTheContractsKeys) {
   const Ran ran =
       luxrig::testing::run({program("luxrig"), "evaluate", source("tests/rigs/room"), "--max-error", "0.05", "--json"});
   ASSERT_EQ(ran.code, 0) << ran.output;
-  const json out = json_of(ran);
+  const json out = json_in(ran);
   ASSERT_TRUE(out.is_object()) << ran.output;
   for (const char* key :
        {"model", "points", "wanted", "wanted_of", "rms_error", "relative_error", "rays", "seconds", "threads"})
@@ -49,7 +43,7 @@ TEST(Commands, SolveJsonHasTheContractsKeysAndEvaluateAgreesWithIt) {
   const Ran again =
       luxrig::testing::run({program("luxrig"), "evaluate", source("tests/rigs/room"), "--levels", plan, "--json"});
   ASSERT_EQ(again.code, 0) << again.output;
-  const json lux = json_of(again);
+  const json lux = json_in(again);
   for (std::size_t i = 0; i < out["points"].size(); ++i) {
     EXPECT_NEAR(lux["points"][i]["lux"].get<double>(), out["points"][i]["lux"].get<double>(),
                 0.04 * out["points"][i]["lux"].get<double>());
@@ -96,7 +90,7 @@ TEST(Commands, DaylightIsReportedSeparatelyAndCountedEverywhere) {
   const Ran lit = luxrig::testing::run(
       {program("luxrig"), "evaluate", source("rigs/reading-room"), "--max-error", "0.03", "--levels", plan, "--json"});
   ASSERT_EQ(lit.code, 0) << lit.output;
-  const json points = json_of(lit)["points"];
+  const json points = json_in(lit)["points"];
   ASSERT_EQ(points.size(), 11u);
   double window_lx = 0, inner_lx = 0;
   for (std::size_t i = 0; i < out["points"].size(); ++i) {
@@ -198,7 +192,7 @@ TEST(Commands, SolvePlacesLightsAndEvaluateAndRenderShowThem) {
   const Ran lit = luxrig::testing::run(
       {program("luxrig"), "evaluate", source("tests/rigs/hang"), "--levels", plan.string(), "--json"});
   ASSERT_EQ(lit.code, 0) << lit.output;
-  const json points = json_of(lit)["points"];
+  const json points = json_in(lit)["points"];
   ASSERT_EQ(points.size(), 20u);
   for (const json& point : points)
     EXPECT_NEAR(point["lux"].get<double>(), point["goal_lux"].get<double>(), 0.01 * point["goal_lux"].get<double>());
@@ -271,7 +265,7 @@ TEST(Commands, EvaluateGivesTheSameResultForAnyNumberOfThreads) {
   const auto lux = [](const char* threads) {
     const Ran ran = luxrig::testing::run({program("luxrig"), "evaluate", source("tests/rigs/room"), "--max-error",
                                           "0.02", "--threads", threads, "--json"});
-    json out = json_of(ran);
+    json out = json_in(ran);
     return out.is_object() ? out["points"].dump() : ran.output;
   };
   EXPECT_EQ(lux("1"), lux("3"));

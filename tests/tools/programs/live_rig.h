@@ -10,6 +10,12 @@ namespace luxrig::testing {
 
 using nlohmann::json;
 
+/// The printed JSON, after the progress lines of a slow machine.
+inline json json_in(const Ran& ran) {
+  const auto begin = ran.output.find("{\n");
+  return begin == std::string::npos ? json() : json::parse(ran.output.substr(begin), nullptr, false);
+}
+
 inline bool has_alarm(const json& status, const std::string& text) {
   for (const json& alarm : status.value("alarms", json::array()))
     if (alarm["text"].get<std::string>().find(text) != std::string::npos) return true;

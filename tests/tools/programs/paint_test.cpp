@@ -31,11 +31,6 @@ class PaintedRoom {
   Folder folder_;
 };
 
-json json_in(const Ran& ran) {
-  const auto begin = ran.output.find("{\n");
-  return begin == std::string::npos ? json() : json::parse(ran.output.substr(begin), nullptr, false);
-}
-
 TEST(Paint, StrokesBecomePointsOfTheRigAndAreTakenBackWhole) {
   const PaintedRoom room;
   const Ran unpainted = room.run("check");
