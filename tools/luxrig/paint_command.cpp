@@ -96,38 +96,38 @@ Checked<std::vector<Stroke>> strokes_of(const SurfaceGoalSpec& goal) {
   return painting_from_json(*text, goal.strokes_file.string());
 }
 
-/// What the goals ask of every surface in view. A surface that two goals paint shows the first.
-std::string write_goals(const PaintArguments& arguments, const Session& session,
-                        std::span<const SurfacePainter::Painted> painted) {
+/// What the goals ask of every surface in view, as a PNG; surfaces without paint are grey. A surface that two goals paint
+/// shows the first.
+std::string picture_of(const PaintArguments& arguments, const Session& session,
+                       std::span<const SurfacePainter::Painted> painted) {
   const Rig& rig = session.rig;
   constexpr int kWidth_px = 960, kHeight_px = 600;
-  Camera camera;
+  constexpr double kDarkest = 0.15, kLightest = 0.75;
   const auto named = std::find_if(rig.cameras.begin(), rig.cameras.end(),
                                   [&](const PictureCamera& each) { return each.name == arguments.camera; });
-  if (named != rig.cameras.end())
-    camera = view_of(*named);
-  else
-    camera = automatic_camera(*session.rays, rig, hung_look(rig).joints, kWidth_px, kHeight_px, rad_from_deg(60));
+  const Camera camera = named != rig.cameras.end() ? view_of(*named)
+                                                   : automatic_camera(*session.rays, rig, hung_look(rig).joints,
+                                                                      kWidth_px, kHeight_px, rad_from_deg(60));
   Picture picture;
   picture.width_px = camera.width_px;
   picture.height_px = camera.height_px;
   const auto pixels = static_cast<std::size_t>(camera.width_px) * static_cast<std::size_t>(camera.height_px);
   picture.illuminance_lx.assign(pixels, -1);
-  picture.luminance_cd_m2.assign(pixels, Vec3f::Zero());
+  std::vector<float> grey(pixels, 0);
+  std::size_t pixel = 0;
   for (int y = 0; y < camera.height_px; ++y)
-    for (int x = 0; x < camera.width_px; ++x) {
-      const auto hit = session.rays->nearest(camera.eye_world_m, ray_direction(camera, x + 0.5, y + 0.5), Vec3::Zero());
+    for (int x = 0; x < camera.width_px; ++x, ++pixel) {
+      const Vec3 direction = ray_direction(camera, x + 0.5, y + 0.5);
+      const auto hit = session.rays->nearest(camera.eye_world_m, direction, Vec3::Zero());
       if (!hit) continue;
-      float& lux = picture.illuminance_lx[static_cast<std::size_t>(y) * static_cast<std::size_t>(camera.width_px) +
-                                          static_cast<std::size_t>(x)];
-      lux = 0;
+      grey[pixel] = static_cast<float>(kDarkest + (kLightest - kDarkest) * std::abs(hit->normal_world.dot(direction)));
       for (const auto& goal : painted)
-        if (const auto painted_lx = goal.painting->lux_at({hit->position_world_m, hit->normal_world})) {
-          lux = static_cast<float>(*painted_lx);
+        if (const auto lux = goal.painting->lux_at({hit->position_world_m, hit->normal_world})) {
+          picture.illuminance_lx[pixel] = static_cast<float>(*lux);
           break;
         }
     }
-  return write_false_colour(picture, rig.name + ": light asked for", std::nullopt, *arguments.picture);
+  return false_colour_png(picture, rig.name + ": light asked for", {"lux", 2, std::nullopt, grey});
 }
 
 struct Row {
@@ -190,6 +190,8 @@ Result<Row> paint_goal(const SurfaceGoalSpec& goal, std::vector<Stroke> strokes,
 }
 
 int run_paint(const PaintArguments& arguments) {
+  if (arguments.picture && arguments.picture->extension() != ".png")
+    return refuse(fmt::format("{} is no name of a PNG: end it in .png", arguments.picture->string()));
   auto rig = load_rig(arguments.rig, PaintedPoints::left_out);
   if (!rig) return report(rig.error());
   const auto session = session_of(std::move(*rig));
@@ -240,8 +242,8 @@ int run_paint(const PaintArguments& arguments) {
         fmt::print("{} asks for {:g} lx there\n", in_quotes(rows[k].goal->name), *lux);
   }
   if (!arguments.picture) return kExitOk;
-  if (const std::string why = write_goals(arguments, *session, painted); !why.empty())
-    return report(Fault{Cause::system, "", why, {}});
+  if (auto written = write_file(*arguments.picture, picture_of(arguments, *session, painted)); !written)
+    return report(written.error());
   return kExitOk;
 }
 
@@ -272,8 +274,8 @@ Action declare_paint(CLI::App& command) {
       ->check(CLI::Range(0.0, 1.0));
   command.add_option("--from", paint->from_m, "x y z [m] from where the surface is looked at")->expected(3);
   command.add_option("--pick", paint->pick_m, "say what is asked for at x y z [m]")->expected(3);
-  auto* picture = command.add_option("--picture", paint->picture, "what is asked for, in colours, as PNG or JPEG")
-                      ->check(offers_files());
+  auto* picture =
+      command.add_option("--picture", paint->picture, "what is asked for, in colours, as PNG")->check(offers_files());
   command.add_option("--camera", paint->camera, "a camera of the rig for it")->needs(picture);
   command.add_option("--threads", paint->threads, "threads (0: one per core)")->check(CLI::Range(0, 1024));
   command.add_flag("--json", paint->json, "print JSON");

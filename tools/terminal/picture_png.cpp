@@ -215,8 +215,9 @@ PngSurface false_colour_surface(const Picture& picture, const std::string& title
   cairo_set_source_rgb(pen.get(), 0.1, 0.1, 0.1);
   cairo_paint(pen.get());
   paint_png(surface.get(), 0, 0, picture.width_px, picture.height_px, [&](int x, int y) {
-    const float value = picture.illuminance_lx[static_cast<std::size_t>(y * picture.width_px + x)];
-    if (value < 0) return Vec3(Vec3::Zero());
+    const auto pixel = static_cast<std::size_t>(y * picture.width_px + x);
+    const float value = picture.illuminance_lx[pixel];
+    if (value < 0) return Vec3(Vec3::Constant(colours.grey.empty() ? 0.0 : static_cast<double>(colours.grey[pixel])));
     return viridis(value > 0 ? std::log(value / bottom) / std::log(top / bottom) : 0);
   });
   draw_isolux_lines(pen.get(), picture, bottom, top);
@@ -239,7 +240,7 @@ std::string png_of(const PngSurface& surface) {
 
 std::string write_false_colour(const Picture& picture, const std::string& title, std::optional<double> max_lx,
                                const std::filesystem::path& file) {
-  return write_picture(false_colour_surface(picture, title, {"lux", 2, max_lx}), file);
+  return write_picture(false_colour_surface(picture, title, {"lux", 2, max_lx, {}}), file);
 }
 
 std::string false_colour_png(const Picture& picture, const std::string& title, const FalseColours& colours) {

@@ -36,6 +36,8 @@ struct FalseColours {
   const char* unit = "lux";
   double decades = 2;          ///< of the scale
   std::optional<double> most;  ///< top of the scale; none = as above
+  /// What is shown instead where a value is negative: grey, 0…1 for each pixel. Empty = black.
+  std::span<const float> grey{};
 };
 /// The same as the bytes of a PNG; empty if memory runs out. Values: Picture::illuminance_lx, in any unit.
 [[nodiscard]] std::string false_colour_png(const Picture& picture, const std::string& title,

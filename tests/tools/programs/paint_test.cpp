@@ -52,6 +52,8 @@ TEST(Paint, StrokesBecomePointsOfTheRigAndAreTakenBackWhole) {
   EXPECT_EQ(json_in(second)["surface_goals"][0]["strokes"], 2);
   EXPECT_EQ(json_in(second)["surface_goals"][0]["highest_lux"], 600);
   EXPECT_NE(text_of(room.file("desk.csv")), points);
+  ASSERT_EQ(room.paint({"--picture", room.file("asked.png").string()}).code, 0);
+  EXPECT_EQ(text_of(room.file("asked.png")).substr(1, 3), "PNG");
   const Ran picked = room.paint({"--pick", "1.8", "2.6", "0.74"});
   EXPECT_NE(picked.output.find("\"desk\" asks for 600 lx there"), std::string::npos) << picked.output;
 
@@ -82,6 +84,7 @@ TEST(Paint, WhatCannotBePaintedChangesNoFile) {
       {{"--bucket", "1.8", "2.6", "0.74", "--lux", "-4"}, "lux"},
       {{"--bucket", "1.8", "2.6", "0.74", "--lux", "nan"}, "lux"},
       {{"--erase", "0.1", "0.1", "0"}, "nothing is painted there"},
+      {{"--picture", "a.jpg"}, "end it in .png"},
       {{"--undo", "2"}, "has 1 strokes to take back"},
       {{"--undo", "1", "--erase", "1.8", "2.6", "0.74"}, "excludes"},
   };
