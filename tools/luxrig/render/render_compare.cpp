@@ -18,7 +18,7 @@
 namespace luxrig {
 namespace {
 
-constexpr double kFill = 0.9;
+constexpr double kObjectFill = 0.9;
 constexpr std::size_t kPlacesSeen = 2000;
 constexpr double kKey_rad = rad_from_deg(45);
 
@@ -68,12 +68,12 @@ Camera camera_of(const Rig& rig, const Shown& shown, const RenderOptions& option
   if (!eye) {
     std::vector<Sight> wanted;
     for (const Vec3& place : shown.places_world_m) wanted.push_back({place});
-    return camera_that_sees(shown.rays, shown.places_world_m, wanted, kFill, fov_rad, width_px, options.height_px)
+    return camera_that_sees(shown.rays, shown.places_world_m, wanted, kObjectFill, fov_rad, width_px, options.height_px)
         .camera;
   }
   // What fills the picture from there.
   Camera camera =
-      camera_that_shows(shown.places_world_m, *eye - shown.middle_world_m, kFill, fov_rad, width_px, options.height_px);
+      camera_that_shows(shown.places_world_m, *eye - shown.middle_world_m, kObjectFill, fov_rad, width_px, options.height_px);
   const double as_far = (camera.eye_world_m - shown.middle_world_m).norm() / (*eye - shown.middle_world_m).norm();
   camera.vertical_fov_rad = 2 * std::atan(std::tan(0.5 * fov_rad) * as_far);
   camera.eye_world_m = *eye;
