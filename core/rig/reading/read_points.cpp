@@ -36,6 +36,9 @@ void RigReader::read_surface_goal(Section& s) {
                  fmt::format("min_spacing_m {} is above max_spacing_m {}", goal.min_spacing_m, goal.max_spacing_m),
                  "make it the smaller of the two");
   const FilePosition in_file = s.place_of("strokes");
+  if (goal.points_file() == goal.strokes_file)
+    return problems.add(in_file, fmt::format("{} would be the file of its points, too", in_quotes(strokes)),
+                        "end its name in .json");
   const auto same_file = [&](const SurfaceGoalSpec& other) { return other.strokes_file == goal.strokes_file; };
   if (!strokes.empty() && std::any_of(rig.surface_goals.begin(), rig.surface_goals.end(), same_file))
     return problems.add(in_file, fmt::format("another surface goal has the strokes {}", in_quotes(strokes)),
