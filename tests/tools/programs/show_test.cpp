@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <numbers>
+#include <regex>
 
 #include "tests/tools/programs/process.h"
 
@@ -109,8 +110,8 @@ TEST(Render, WritesJpegAndReportsItsExposure) {
   }
 }
 
-// The lamp hangs to the left of where the eye looks from, and the key light is to its right: its picture is the other
-// way round.
+// The key light is the same lamp, as far away, and the eye sees the ball's brightest place in both: so both have one white.
+// As planned, the lamp is dimmed.
 TEST(Compare, ShowsTheObjectInThreeLightsMeteredOnIt) {
   const Folder folder;
   const std::string rig = rig_with(folder, ball_obj());
@@ -148,6 +149,13 @@ goal_lx = 2
   ASSERT_EQ(ran.code, 0) << ran.output;
   for (const char* title : {"before: ", "after: ", "one key light, 45°"})
     EXPECT_NE(ran.output.find(title), std::string::npos) << ran.output;
+  std::vector<double> white_cd_m2;
+  const std::regex white("white is ([0-9.e+-]+) cd/m2");
+  for (auto at = std::sregex_iterator(ran.output.begin(), ran.output.end(), white); at != std::sregex_iterator(); ++at)
+    white_cd_m2.push_back(std::stod((*at)[1].str()));
+  ASSERT_EQ(white_cd_m2.size(), 3u) << ran.output;
+  EXPECT_NEAR(white_cd_m2[2], white_cd_m2[0], 0.15 * white_cd_m2[0]) << ran.output;
+  EXPECT_GT(white_cd_m2[0], 1.2 * white_cd_m2[1]) << "all at full, and dimmed to the goal: " << ran.output;
   const std::string bytes = text_of(png);
   ASSERT_EQ(bytes.substr(1, 3), "PNG");
   // Big-endian width and height of the PNG's header.

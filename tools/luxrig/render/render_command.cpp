@@ -32,6 +32,8 @@
 namespace luxrig {
 namespace {
 
+constexpr int kMaxPasses = 4096;
+
 /// That of a plan, after its placed lights are hung; or each fixture at its highest level.
 Checked<HungPlan> look_to_render(const RenderOptions& options, const Rig& rig) {
   if (!options.plan) {
@@ -49,7 +51,8 @@ Checked<HungPlan> look_to_render(const RenderOptions& options, const Rig& rig) {
   return hang_plan(*plan, rig, options.plan->string());
 }
 
-/// As the options ask, or metered. Also gives a description in words.
+}  // namespace
+
 PhotographLook look_of(const RenderOptions& options, const Picture& picture, std::span<const Emitter> emitters,
                        std::span<const double> levels, std::string& words) {
   PhotographLook look;
@@ -69,7 +72,23 @@ PhotographLook look_of(const RenderOptions& options, const Picture& picture, std
   return look;
 }
 
-}  // namespace
+Result<Picture> picture_in_time(const RayScene& rays, const std::vector<Emitter>& emitters,
+                                const std::vector<double>& levels, const Camera& camera, const RenderOptions& options,
+                                const PartOfPictures& part) {
+  PictureOptions how;
+  how.threads = options.threads;
+  how.wanted_relative_error = options.max_error;
+  how.watch.stop = part.stop;
+  how.max_passes = options.passes.value_or(kMaxPasses);
+  const auto start = std::chrono::steady_clock::now();
+  how.after_pass = [&](double done, double) {
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const double by_time = options.passes ? 0 : seconds * part.of / options.seconds;
+    part.progress((part.number + std::min(1.0, std::max(done, by_time))) / part.of);
+    return by_time < 1;
+  };
+  return render_picture(rays, emitters, levels, camera, how);
+}
 
 Checked<HungPlan> load_rig_for_picture(const RenderOptions& options) {
   auto rig = load_rig(options.rig);
@@ -103,20 +122,8 @@ int run_render(const RenderOptions& options) {
                                    rad_from_deg(options.vertical_fov_deg.value_or(60)));
   if (options.eye_world_m) camera.eye_world_m = *options.eye_world_m;
   if (options.target_world_m) camera.target_world_m = *options.target_world_m;
-  PictureOptions how;
-  how.threads = options.threads;
-  how.wanted_relative_error = options.max_error;
-  how.watch.stop = stop_on_signals();
-  how.max_passes = options.passes.value_or(kMostPasses);
-  const Progress progress = progress_line("rendering");
-  const auto start = std::chrono::steady_clock::now();
-  how.after_pass = [&](double done, double) {
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    const double by_time = options.passes ? 0 : seconds / options.seconds;
-    progress(std::min(1.0, std::max(done, by_time)));
-    return by_time < 1;
-  };
-  const auto picture = render_picture(rays, emitters, all_levels, camera, how);
+  const auto picture = picture_in_time(rays, emitters, all_levels, camera, options,
+                                       {progress_line("rendering"), stop_on_signals(), 0, 1});
   if (!picture) {
     fmt::print(stderr, "luxrig render: {}\n", picture.error().detail);
     return 2;

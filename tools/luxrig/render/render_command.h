@@ -3,21 +3,21 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
+#include <stop_token>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/picture/picture.h"
 #include "core/plan/plan.h"
+#include "core/run.h"
 #include "tools/terminal/exposure.h"
 
 namespace luxrig {
 
 /// Pictures that explain; render_show.h says what each draws.
 enum class ShowWhat { curvature, interest, features, histogram, domain, beams };
-
-/// Samples per pixel after which noise is accepted.
-inline constexpr int kMostPasses = 4096;
 
 struct RenderOptions {
   std::filesystem::path rig;
@@ -43,6 +43,22 @@ struct RenderOptions {
 /// For `options.show`, which must be set. Returns the exit code: 0, 2 for bad input (with a message on stderr), 1 if
 /// the file cannot be written.
 int run_show(const RenderOptions& options);
+
+/// One of so many pictures that share the options' time and a progress line.
+struct PartOfPictures {
+  Progress progress;
+  std::stop_token stop;
+  int number = 0, of = 1;
+};
+/// Ends when the picture's noise is as low as asked for, or its time is over.
+[[nodiscard]] Result<Picture> picture_in_time(const RayScene& rays, const std::vector<Emitter>& emitters,
+                                              const std::vector<double>& levels, const Camera& camera,
+                                              const RenderOptions& options, const PartOfPictures& part);
+
+/// As the options ask, or metered on `picture`. words: says so in a line.
+[[nodiscard]] PhotographLook look_of(const RenderOptions& options, const Picture& picture,
+                                     std::span<const Emitter> emitters, std::span<const double> levels,
+                                     std::string& words);
 
 /// The rig and its look: that of the plan, after its placed lights are hung; or each fixture at its highest level.
 [[nodiscard]] Checked<HungPlan> load_rig_for_picture(const RenderOptions& options);

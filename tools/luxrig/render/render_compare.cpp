@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "core/highlight/picture/object_view.h"
@@ -29,7 +28,6 @@ struct Lit {
 };
 
 struct Shown {
-  Scene scene;
   RayScene rays, object;
   std::vector<Vec3> places_world_m;  ///< on the object
   Vec3 middle_world_m;
@@ -49,7 +47,7 @@ Result<Shown> shown_object(const Rig& rig, const RenderOptions& options) {
     places.push_back(object->origin_world_m + object->vertices_m[v].cast<double>());
   if (places.empty()) return refusal(fmt::format("object {} has no surface", *name));
   const Vec3 middle = alone.bounds_world_m().center();
-  return Shown{std::move(*scene), std::move(rays), std::move(alone), std::move(places), middle};
+  return Shown{std::move(rays), std::move(alone), std::move(places), middle};
 }
 
 bool sees(const Shown& shown, const Vec3& eye_world_m) {
@@ -162,30 +160,12 @@ int run_compare(const RenderOptions& options) {
     const std::vector<Emitter> emitters = all_emitters_of(rig, all[k].hung.look.joints);
     std::vector<double> levels = all[k].hung.look.levels;
     levels.resize(emitters.size(), 1.0);  // daylight
-    PictureOptions how;
-    how.threads = options.threads;
-    how.wanted_relative_error = options.max_error;
-    how.watch.stop = stop;
-    how.max_passes = options.passes.value_or(kMostPasses);
-    const auto start = std::chrono::steady_clock::now();
-    const auto count = static_cast<double>(all.size());
-    how.after_pass = [&](double done, double) {
-      const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-      const double by_time = options.passes ? 0 : seconds * count / options.seconds;
-      progress((static_cast<double>(k) + std::min(1.0, std::max(done, by_time))) / count);
-      return by_time < 1;
-    };
-    auto picture = render_picture(shown->rays, emitters, levels, camera, how);
+    auto picture = picture_in_time(shown->rays, emitters, levels, camera, options,
+                                   {progress, stop, static_cast<int>(k), static_cast<int>(all.size())});
     if (!picture) return refuse(picture.error());
-    PhotographLook look;
-    look.white_cd_m2 = options.exposure.white_cd_m2.value_or(metered_white_cd_m2(of_object(*picture, *shown, camera)) /
-                                                             std::exp2(options.exposure.stops));
-    if (options.white_balance.cct_k)
-      look.white_rgb = rgb_of_cct(*options.white_balance.cct_k);
-    else if (options.white_balance.of_lamps)
-      look.white_rgb = white_of_lamps(emitters, levels).rgb;
-    fmt::print("{}: white is {:.3g} cd/m2, metered on the object; noise {:.2g}\n", all[k].title, look.white_cd_m2,
-               picture->relative_error);
+    std::string words;
+    const PhotographLook look = look_of(options, of_object(*picture, *shown, camera), emitters, levels, words);
+    fmt::print("{}: noise {:.2g} of a pixel's lux; {}", all[k].title, picture->relative_error, words);
     pictures.push_back(std::move(*picture));
     photographs.push_back({nullptr, all[k].title, look});
   }
