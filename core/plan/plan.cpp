@@ -117,6 +117,7 @@ OrderedJson json_of(const PlannedPoint& point) {
   put(json, "goal_xy", point.goal_xy);
   put(json, "weight", point.weight);
   put(json, "max_lux", point.max_lux);
+  put(json, "goal_tolerance", point.goal_tolerance);
   if (!point.why.empty()) json["why"] = point.why;
   if (point.verdict) {
     json["verdict"] = name_of(*point.verdict);

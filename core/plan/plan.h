@@ -96,6 +96,7 @@ struct PlannedPoint {
   std::optional<double> daylight_lux{};         ///< share of `lux` from daylight, in lux; none in a rig without
   std::optional<Chromaticity> xy{}, goal_xy{};  ///< in a rig whose goals have colours
   std::optional<double> weight{}, max_lux{};    ///< as used in the solve; weight: of a goal
+  std::optional<double> goal_tolerance{};       ///< its own; none = the rig's
   /// Light that the show allows there until a luxmeter confirms the limits, if less than `lux`.
   std::optional<double> opening_lux{};
 };
@@ -129,7 +130,7 @@ struct Plan {
 
 /// Gives each point with a goal its verdict (core/plan/verdict.h): for the light of the plan, if the rig is exactly as
 /// its file states, known to the standard error of the transport. A goal with a colour is also missed if its light is
-/// further than 0.02 from it in CIE 1976 u'v'.
+/// further than 0.02 from it in CIE 1976 u'v'. goal_tolerance: of points without their own.
 void judge(Plan& plan, double goal_tolerance);
 [[nodiscard]] VerdictCounts goals_of(const Plan& plan);
 /// By the model, no goal is missed (some may be unknown) and every limit is kept.
@@ -163,7 +164,8 @@ struct HungPlan {
 /// JSON, as `luxrig solve --json` prints it. Among its keys:
 ///   top level  "luxrig_plan": 1, "rig", "made_for": {"goals", "limits", "light"} (fingerprints of the rig, in hex)
 ///   a light    "solved_level", "watts", "beam_angle_deg" if it zooms
-///   a point    "weight", "max_lux", "why" if there is one, "xy" and "goal_xy" if goals have a colour
+///   a point    "weight", "max_lux", "goal_tolerance" if it has its own, "why" if there is one, "xy" and "goal_xy" if
+///              goals have a colour
 ///   a task     "watts", "switches_proven" if false
 ///   placement  "fixtures" (like "lights"), "numbers": [{"lights", "normalised_error", "local_contrast"}],
 ///              "lower_bound", "lower_bound_of_number", "front": [{"max_watts", "watts", "normalised_error"}]

@@ -96,7 +96,7 @@ PlannedPoint point_of(const JsonReader& reader, const Json& json, const std::str
   point.goal_xy = reader.pair(json, path, "goal_xy");
   point.weight = reader.optional_number(json, path, "weight");
   point.max_lux = reader.optional_number(json, path, "max_lux");
-  point.opening_lux = reader.optional_number(json, path, "opening_lux");
+  point.goal_tolerance = reader.optional_number(json, path, "goal_tolerance");
   point.why = reader.text(json, path, "why", false);
   point.verdict = verdict_named(reader.text(json, path, "verdict", false));
   point.reason = reader.text(json, path, "reason", false);

@@ -24,7 +24,8 @@ void judge(Plan& plan, double goal_tolerance) {
     point.reason.clear();
     if (!point.goal_lux) continue;
     const LuxEstimate light = estimate_of(point.lux, point.standard_error_lux);
-    const double allowed_lx = tolerance_lx(*point.goal_lux, goal_tolerance, largest_goal_lx);
+    const double allowed_lx =
+        tolerance_lx(*point.goal_lux, point.goal_tolerance.value_or(goal_tolerance), largest_goal_lx);
     point.verdict = verdict_of(light, *point.goal_lux, allowed_lx);
     point.reason = reason_of(*point.verdict, light, *point.goal_lux, allowed_lx, point.why,
                              "a smaller --max-error would settle it");

@@ -78,4 +78,10 @@ std::string text_of(const VerdictCounts& counts) {
   return fmt::format("no goal missed: {} of {} met{}", counts.met, goals, unknown);
 }
 
+std::string tolerance_text(std::pair<double, double> least_and_most) {
+  const auto [least, most] = least_and_most;
+  if (most <= least) return fmt::format("within {:.3g} %", 100 * most);
+  return fmt::format("within {:.3g} to {:.3g} %", 100 * least, 100 * most);
+}
+
 }  // namespace luxrig

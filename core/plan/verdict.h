@@ -11,6 +11,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace luxrig {
@@ -55,5 +56,7 @@ struct VerdictCounts {
 
 /// "all 6 goals met", "1 of 6 goals missed, 2 unknown", "no goal missed: 6 of 40 met, 34 unknown", "no goals".
 [[nodiscard]] std::string text_of(const VerdictCounts& counts);
+/// "within 10 %", "within 10 to 25 %": shares of the goals. least <= most.
+[[nodiscard]] std::string tolerance_text(std::pair<double, double> least_and_most);
 
 }  // namespace luxrig

@@ -19,7 +19,8 @@ struct Point {
   std::optional<double> goal_lx;      ///< none = only reported (and limited)
   std::optional<Vec3> goal_rgb{};     ///< colour of that goal, linear Rec. 709 with a luminance of 1; none = any
   double weight = 1;
-  std::optional<double> max_lx;  ///< hard limit
+  std::optional<double> max_lx;            ///< hard limit
+  std::optional<double> goal_tolerance{};  ///< none = that of ControlSpec
   FilePosition in_file;
 };
 
@@ -30,6 +31,7 @@ struct SurfaceGoalSpec {
   std::filesystem::path strokes_file;  ///< core/goals/painting_file.h
   std::optional<double> max_lx;        ///< hard limit at its points
   double weight = 1;
+  std::optional<double> goal_tolerance{};         ///< of its points; none = ControlSpec::goal_tolerance
   double patch_m = 0.1;                           ///< size of the patches that strokes cover
   double min_spacing_m = 0.2, max_spacing_m = 1;  ///< of its points: where it has most detail, and where it has none
   FilePosition in_file;
@@ -67,6 +69,20 @@ struct PlacementSpec {
   bool bound = false;             ///< also prove how close the same number of lights could come
 };
 
+/// What a task's lights are to the object, as photographers say. any: all of its light.
+enum class LightRole { any, key, fill, rim, background };
+[[nodiscard]] constexpr const char* name_of(LightRole role) {
+  constexpr const char* kNames[] = {"any", "key", "fill", "rim", "background"};
+  return kNames[static_cast<int>(role)];
+}
+
+/// Where photographers put lights for a known effect (core/highlight/lights/set_up.h).
+enum class SetUp { none, rembrandt, loop, split, broad, raking, copy };
+[[nodiscard]] constexpr const char* name_of(SetUp set_up) {
+  constexpr const char* kNames[] = {"none", "rembrandt", "loop", "split", "broad", "raking", "copy"};
+  return kNames[static_cast<int>(set_up)];
+}
+
 /// An object whose relief is to be brought out.
 struct ReliefSpec {
   std::size_t object = 0;               ///< index in SceneSpec::objects; a mesh
@@ -77,6 +93,9 @@ struct ReliefSpec {
   bool relative = true;                 ///< that contrast as an adapted eye sees it; false = in lux
   double coverage_weight = 0.25;        ///< weight of features with a shadow edge, relative to contrast
   std::optional<std::size_t> camera{};  ///< only relief that it sees counts; none = all
+  LightRole role = LightRole::any;
+  std::optional<double> ratio{};  ///< of the key's illuminance to this role's, or, of the key, to all other light
+  SetUp set_up = SetUp::none;     ///< as seen by the camera
 };
 
 /// kind == aim: aims and levels of heads that are already hung.

@@ -22,12 +22,29 @@ constexpr std::size_t kMaxBytes = std::size_t{64} << 20;
 
 constexpr std::string_view kMadeFor = "# made for ";
 
-enum Column { kName, kX, kY, kZ, kNx, kNy, kNz, kGoal, kGoalX, kGoalY, kGoalCct, kWeightColumn, kMax, kColumns };
+enum Column {
+  kName,
+  kX,
+  kY,
+  kZ,
+  kNx,
+  kNy,
+  kNz,
+  kGoal,
+  kGoalX,
+  kGoalY,
+  kGoalCct,
+  kWeightColumn,
+  kMax,
+  kTolerance,
+  kColumns
+};
 constexpr std::array<std::string_view, kColumns> kColumnNames = {
-    "name", "x_m", "y_m", "z_m", "nx", "ny", "nz", "goal_lx", "goal_x", "goal_y", "goal_cct_k", "weight", "max_lx"};
+    "name",    "x_m",    "y_m",    "z_m",        "nx",     "ny",     "nz",
+    "goal_lx", "goal_x", "goal_y", "goal_cct_k", "weight", "max_lx", "goal_tolerance"};
 constexpr std::array<std::string_view, kColumns> kKeys = {
     "name",    "position_m", "position_m", "position_m", "normal", "normal", "normal",
-    "goal_lx", "goal_xy",    "goal_xy",    "goal_cct_k", "weight", "max_lx"};
+    "goal_lx", "goal_xy",    "goal_xy",    "goal_cct_k", "weight", "max_lx", "goal_tolerance"};
 
 struct Cell {
   std::string text;
@@ -188,6 +205,7 @@ class PointsReader {
     if (!read_colour(cells, values, out)) return;
     p.weight = values[kWeightColumn].value_or(p.weight);
     p.max_lx = values[kMax];
+    p.goal_tolerance = values[kTolerance];
     rows_.push_back(std::move(out));
   }
 
@@ -326,17 +344,20 @@ std::string painted_version(const SurfaceGoalSpec& goal) {
   fingerprint.add(goal.name);
   fingerprint.add(goal.max_lx);
   for (const double value : {goal.weight, goal.patch_m, goal.min_spacing_m, goal.max_spacing_m}) fingerprint.add(value);
+  if (goal.goal_tolerance) fingerprint.add(*goal.goal_tolerance);
   return fmt::format("{:016x}", fingerprint.value());
 }
 
 std::string points_csv(std::span<const Point> points, const std::string& made_for) {
-  std::string csv = fmt::format("{}{}\nname,x_m,y_m,z_m,nx,ny,nz,goal_lx,weight,max_lx\n", kMadeFor, made_for);
+  std::string csv =
+      fmt::format("{}{}\nname,x_m,y_m,z_m,nx,ny,nz,goal_lx,weight,max_lx,goal_tolerance\n", kMadeFor, made_for);
   const auto optional = [](const std::optional<double>& value) { return value ? fmt::format("{}", *value) : ""; };
   for (const Point& point : points) {
     csv += cell_of(point.name);
     for (const Vec3& vector : {point.position_world_m, point.normal_world})
       for (const double value : vector) csv += fmt::format(",{}", value);
-    csv += fmt::format(",{},{},{}\n", optional(point.goal_lx), point.weight, optional(point.max_lx));
+    csv += fmt::format(",{},{},{},{}\n", optional(point.goal_lx), point.weight, optional(point.max_lx),
+                       optional(point.goal_tolerance));
   }
   return csv;
 }

@@ -3,7 +3,7 @@
 ///
 ///   name,x_m,y_m,z_m,nx,ny,nz,goal_lx,weight,max_lx
 ///
-/// For the colour of a goal, add goal_x and goal_y, or goal_cct_k.
+/// For the colour of a goal, add goal_x and goal_y, or goal_cct_k; for a tolerance of its own, goal_tolerance.
 ///
 /// Columns may be in any order. name, x_m, y_m and z_m are required. An empty cell takes the default of the key of the
 /// same name in [[point]] (schema.h; its ranges apply). Cells may be in double quotes, where "" is one quote. Empty
@@ -38,8 +38,8 @@ struct PointsTable {
 /// Refuses a file over 64 MiB.
 [[nodiscard]] PointsTable load_points_csv(const std::filesystem::path& path, std::size_t most);
 
-/// Says what the points of a surface goal follow from: its strokes, limit, weight and spacing. Empty if its strokes cannot
-/// be read.
+/// Says what the points of a surface goal follow from: its strokes, limit, weight, tolerance and spacing. Empty if its
+/// strokes cannot be read.
 [[nodiscard]] std::string painted_version(const SurfaceGoalSpec& goal);
 /// A file with these points for load_points_csv().
 [[nodiscard]] std::string points_csv(std::span<const Point> points, const std::string& made_for);

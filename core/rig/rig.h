@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/result.h"
@@ -45,6 +47,20 @@ struct Rig {
   /// Goals state a colour. In that case, every point with a goal that counts has one.
   [[nodiscard]] bool colour_goals() const {
     return std::any_of(points.begin(), points.end(), [](const Point& p) { return p.goal_lx && p.goal_rgb; });
+  }
+  /// |true - goal| / goal at which the goal of a point still counts as met.
+  [[nodiscard]] double goal_tolerance(std::size_t point) const {
+    return points[point].goal_tolerance.value_or(control.goal_tolerance);
+  }
+  /// Smallest and largest of all goals; the rig's own if there are none.
+  [[nodiscard]] std::pair<double, double> goal_tolerances() const {
+    std::optional<std::pair<double, double>> span;
+    for (std::size_t p = 0; p < points.size(); ++p) {
+      const double one = goal_tolerance(p);
+      if (points[p].goal_lx)
+        span = span ? std::pair(std::min(span->first, one), std::max(span->second, one)) : std::pair(one, one);
+    }
+    return span.value_or(std::pair(control.goal_tolerance, control.goal_tolerance));
   }
   /// Highest allowed level of a fixture: the lower of its own limit and the rig's.
   [[nodiscard]] double max_level(const Fixture& fixture) const { return std::min(fixture.max_level, limits.max_level); }

@@ -93,6 +93,7 @@ RigVersion version_of(const Rig& rig, const Scene& scene) {
     goals.add(point.goal_lx);
     goals.add(point.goal_lx ? point.weight : 0.0);
     if (point.goal_rgb) goals.add(*point.goal_rgb);
+    if (point.goal_lx && point.goal_tolerance) goals.add(*point.goal_tolerance);
     limits.add(point.max_lx);
   }
   for (const Fixture& fixture : rig.fixtures) {

@@ -76,6 +76,7 @@ std::vector<PlannedPoint> predicted_points(const Rig& rig, const TransportMatrix
     point.goal_lux = rig.points[i].goal_lx;
     if (point.goal_lux) point.weight = rig.points[i].weight;
     point.max_lux = rig.points[i].max_lx;
+    if (point.goal_lux) point.goal_tolerance = rig.points[i].goal_tolerance;
     if (const auto& goal_rgb = rig.points[i].goal_rgb) point.goal_xy = xy_of_rgb(*goal_rgb);
     if (rgb.cols() == 3 && lux[row] > 0) point.xy = xy_of_rgb(rgb.row(row).transpose());
     points.push_back(std::move(point));

@@ -112,6 +112,7 @@ std::vector<Point> points_of(const SurfaceGoalSpec& goal, const SurfacePainter::
     if (found.goal_lx > 0) point.goal_lx = found.goal_lx;
     point.weight = found.weight;
     point.max_lx = found.max_lx;
+    point.goal_tolerance = goal.goal_tolerance;
     points.push_back(std::move(point));
   }
   return points;

@@ -257,8 +257,8 @@ int run_solve(const SolveArguments& arguments) {
   fmt::print("{}", opening_light_text(*plan, session->rig));
   const auto kept =
       std::count_if(plan->limits.begin(), plan->limits.end(), [](const auto& limit) { return limit.met; });
-  fmt::print("by the model, were the rig as its file says: {} (within {:.3g} %){}; in {:.2f} s{}\n",
-             text_of(goals_of(*plan)), 100 * session->rig.control.goal_tolerance,
+  fmt::print("by the model, were the rig as its file says: {} ({}){}; in {:.2f} s{}\n", text_of(goals_of(*plan)),
+             tolerance_text(session->rig.goal_tolerances()),
              plan->limits.empty() ? "" : fmt::format(", {} of {} limits kept", kept, plan->limits.size()),
              plan->seconds, arguments.output ? ", plan in " + arguments.output->string() : "");
   return exit_code;

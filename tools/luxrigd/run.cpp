@@ -77,7 +77,7 @@ std::vector<Problem> calibrated_elsewhere(const Rig& rig, const std::optional<Si
 /// State of goals and limits, in one line.
 std::string goals_text(const ShowStatus& status, const Rig& rig) {
   std::string text = text_of(status.goals);
-  if (status.goals.goals() > 0) text += fmt::format(" (within {:.3g} %)", 100 * rig.control.goal_tolerance);
+  if (status.goals.goals() > 0) text += fmt::format(" ({})", tolerance_text(rig.goal_tolerances()));
   const int limits = status.limits_kept + status.limits_exceeded + status.limits_unknown;
   if (limits == 0) return text;
   text += fmt::format(", {} of {} limits kept", status.limits_kept, limits);

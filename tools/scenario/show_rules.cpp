@@ -350,9 +350,8 @@ void ShowRules::look_at_verdicts(double at_s, const Instant& instant) {
   }
   for (std::size_t p = 0; p < instant.lux.size(); ++p) {
     const PointStatus& point = instant.status->points[p];
-    const bool wrong =
-        point.met() && point.goal_lx && *point.goal_lx > 0 &&
-        std::abs(instant.lux[p] - *point.goal_lx) > kCalledMet * rig_.control.goal_tolerance * *point.goal_lx;
+    const bool wrong = point.met() && point.goal_lx && *point.goal_lx > 0 &&
+                       std::abs(instant.lux[p] - *point.goal_lx) > kCalledMet * rig_.goal_tolerance(p) * *point.goal_lx;
     if (!wrong) {
       wrong_since_s_.erase(p);
       continue;

@@ -28,6 +28,7 @@ void RigReader::read_surface_goal(Section& s) {
   goal.strokes_file = folder / strokes;
   s.read("max_lx", goal.max_lx);
   s.read("weight", goal.weight);
+  s.read("goal_tolerance", goal.goal_tolerance);
   s.read("patch_m", goal.patch_m);
   s.read("min_spacing_m", goal.min_spacing_m);
   s.read("max_spacing_m", goal.max_spacing_m);
@@ -135,6 +136,7 @@ void RigReader::read_points() {
     read_goal(s, point);
     s.read("weight", point.weight);
     s.read("max_lx", point.max_lx);
+    s.read("goal_tolerance", point.goal_tolerance);
     rig.points.push_back(std::move(point));
     point_places.emplace_back(problems.file(), s.in_file());
   });

@@ -155,7 +155,7 @@ void ShowController::State::judge_goal(std::size_t p, std::span<const double> le
   double largest_goal_lx = *status.goal_lx;
   if (largest_goal_lx == 0)
     for (const Point& point : points_in_force) largest_goal_lx = std::max(largest_goal_lx, point.goal_lx.value_or(0));
-  const double allowed_lx = tolerance_lx(*status.goal_lx, rig.control.goal_tolerance, largest_goal_lx);
+  const double allowed_lx = tolerance_lx(*status.goal_lx, rig.goal_tolerance(p), largest_goal_lx);
   status.verdict = verdict_of(status.light, *status.goal_lx, allowed_lx);
   // The meter at the point contradicts the model: it is not known which of them is right.
   if (const auto meter = meter_at(p); meter && health.meter_implausible(*meter) && status.verdict == Verdict::met)

@@ -100,7 +100,7 @@ name; position_m; goal_lx; goal_xy; rest
 [[point]]
 name = "floor"; position_m = [0.5, 0, 0]
 [[point]]
-name = "spare"; position_m = [5, 0, 0]; goal_lx; goal_cct_k
+name = "spare"; position_m = [5, 0, 0]; goal_lx; goal_cct_k; goal_tolerance
 [[task]]
 name; kind #> "placement" & luminaire = "track spot"; max_watts
 [[task]]

@@ -57,6 +57,7 @@ TEST(PointsCsv, WhatIsWrittenIsReadAsTheSame) {
     }
     points[0].goal_lx = 1 / 3.0;
     points[1].max_lx = 200;
+    points[2].goal_tolerance = 0.1;
     const auto table = parse_points_csv(points_csv(points, "0123"), "p.csv", 10);
     ASSERT_TRUE(table.problems.empty()) << test::listed(table.problems);
     EXPECT_EQ(table.made_for, "0123");
@@ -69,6 +70,7 @@ TEST(PointsCsv, WhatIsWrittenIsReadAsTheSame) {
       EXPECT_EQ(read.goal_lx, points[i].goal_lx);
       EXPECT_EQ(read.max_lx, points[i].max_lx);
       EXPECT_EQ(read.weight, points[i].weight);
+      EXPECT_EQ(read.goal_tolerance, points[i].goal_tolerance);
     }
   }
 }

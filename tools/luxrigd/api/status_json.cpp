@@ -78,6 +78,7 @@ json point_json(const Point& point, const PointStatus& status, Time now) {
   put_verdicts(out, status);
   if (status.goal_lx) out["goal_lux"] = *status.goal_lx;
   if (point.max_lx) out["max_lux"] = *point.max_lx;
+  if (point.goal_tolerance) out["goal_tolerance"] = *point.goal_tolerance;
   set(out, "predicted_lux", status.predicted_lx);
   set(out, "standard_error_lux", status.standard_error_lx);
   if (status.measured_lx) {
