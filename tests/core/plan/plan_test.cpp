@@ -52,6 +52,7 @@ void expect_same(const Plan& a, const Plan& b) {
     EXPECT_EQ(a.points[p].reason, b.points[p].reason);
     EXPECT_EQ(a.points[p].daylight_lux, b.points[p].daylight_lux);
     EXPECT_EQ(a.points[p].opening_lux, b.points[p].opening_lux);
+    EXPECT_EQ(a.points[p].goal_tolerance, b.points[p].goal_tolerance);
   }
   ASSERT_EQ(a.limits.size(), b.limits.size());
   for (std::size_t l = 0; l < a.limits.size(); ++l) {
@@ -90,6 +91,7 @@ Plan random_plan(std::mt19937_64& random) {
     if (coin()) point.goal_lux = number();
     if (coin()) point.daylight_lux = number();
     if (coin()) point.opening_lux = number();
+    if (coin()) point.goal_tolerance = number();
     plan.points.push_back(point);
   }
   for (std::uint64_t l = 0; l < random() % 3; ++l) plan.limits.push_back({"p", number(), number(), coin()});

@@ -116,6 +116,34 @@ TEST(PlanVerdicts, AGoalKeptOutOfReachIsMissedWithItsReason) {
   EXPECT_FALSE(nothing_missed(plan));
 }
 
+TEST(PlanVerdicts, APointsOwnToleranceCountsInPlaceOfTheRigs) {
+  Plan plan;
+  plan.points = {planned("edge", 100, 118, 1), planned("middle", 100, 106, 1), planned("dark", 0, 4, 0.1)};
+  plan.points[0].goal_tolerance = 0.25;
+  plan.points[1].goal_tolerance = 0.03;
+  plan.points[2].goal_tolerance = 0.05;  // of the largest goal beside it
+  judge(plan, 0.1);
+  EXPECT_EQ(plan.points[0].verdict, Verdict::met) << plan.points[0].reason;
+  EXPECT_EQ(plan.points[1].verdict, Verdict::missed);
+  EXPECT_EQ(plan.points[2].verdict, Verdict::met) << plan.points[2].reason;
+  for (PlannedPoint& point : plan.points) point.goal_tolerance.reset();
+  judge(plan, 0.1);
+  EXPECT_EQ(plan.points[0].verdict, Verdict::missed);
+  EXPECT_EQ(plan.points[1].verdict, Verdict::met) << plan.points[1].reason;
+}
+
+TEST(Verdict, SaysItsTolerances) {
+  EXPECT_EQ(tolerance_text({0.1, 0.1}), "within 10 %");
+  EXPECT_EQ(tolerance_text({0.025, 0.25}), "within 2.5 to 25 %");
+  Rig rig;
+  EXPECT_EQ(rig.goal_tolerances(), std::pair(0.1, 0.1));
+  rig.points.resize(3);
+  rig.points[0].goal_lx = rig.points[1].goal_lx = 100;
+  rig.points[1].goal_tolerance = 0.25;
+  rig.points[2].goal_tolerance = 0.5;  // without a goal, it says nothing
+  EXPECT_EQ(rig.goal_tolerances(), std::pair(0.1, 0.25));
+}
+
 TEST(PlanVerdicts, AGoalInAnotherColourIsMissed) {
   Plan plan;
   plan.points = {planned("a", 200, 200, 0.1)};

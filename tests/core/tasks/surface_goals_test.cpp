@@ -48,6 +48,7 @@ TEST(SurfaceGoals, ABucketOnTheFloorAsksForItsLuxAllOverIt) {
   goal.name = "floor";
   goal.max_lx = 250;
   goal.weight = 3;
+  goal.goal_tolerance = 0.2;
   const Stroke bucket{StrokeKind::bucket, {*floor}, 120};
   SurfacePainter painter(room);
   const auto painted = painter.paint(goal, {&bucket, 1});
@@ -62,6 +63,7 @@ TEST(SurfaceGoals, ABucketOnTheFloorAsksForItsLuxAllOverIt) {
   for (const Point& point : points) {
     EXPECT_EQ(point.goal_lx, 120);
     EXPECT_EQ(point.max_lx, 250);
+    EXPECT_EQ(point.goal_tolerance, 0.2);
     EXPECT_NEAR(point.position_world_m.z(), bounds.min().z(), 1e-6);
     EXPECT_NEAR(point.normal_world.z(), 1, 1e-6);
     weight += point.weight / static_cast<double>(points.size());

@@ -15,9 +15,10 @@ struct MadeUpObject {
   const char* name;
   Scene (*make)();
 };
-constexpr MadeUpObject kMadeUpObjects[] = {{"relief", [] { return make_carved_relief(); }},
-                                           {"relief-10mm", [] { return make_carved_relief(0.010); }},
-                                           {"terrain", [] { return make_terrain(); }}};
+constexpr MadeUpObject kMadeUpObjects[] = {
+    {"relief", [] { return make_carved_relief(); }}, {"relief-10mm", [] { return make_carved_relief(0.010); }},
+    {"terrain", [] { return make_terrain(); }},      {"head", [] { return make_head(); }},
+    {"helmet", [] { return make_helmet(); }},        {"inscription", [] { return make_inscription(); }}};
 
 void write_obj(const Scene& scene, const char* name, std::ostream& out) {
   out << "o " << name << '\n';

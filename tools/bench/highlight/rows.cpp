@@ -48,6 +48,11 @@ std::vector<HighlightObject> highlight_objects(const BenchOptions& options, std:
   std::vector<HighlightObject> objects;
   objects.emplace_back("relief", make_carved_relief(options.quick ? 0.015 : 0.005), options);
   objects.emplace_back("terrain", options.quick ? make_terrain(100, 60) : make_terrain(), options);
+  if (!options.quick) {
+    objects.emplace_back("head", make_head(), options);
+    objects.emplace_back("helmet", make_helmet(), options);
+    objects.emplace_back("inscription", make_inscription(), options);
+  }
   if (options.data_folder.empty()) return objects;
   for (const ObjectFile& file : kObjectFiles) {
     auto scene = load_mesh({options.data_folder / file.file, file.metres_per_unit, UpAxis::y});
@@ -115,6 +120,8 @@ BenchRow bench_row_of(const HighlightRow& row) {
                  {"lit", seen(&SeenRow::lit)},
                  {"lit_rank", seen(&SeenRow::lit_rank)},
                  {"clipped", seen(&SeenRow::clipped)},
+                 {"normals_deg", seen(&SeenRow::normals_deg)},
+                 {"normals_rank", seen(&SeenRow::normals_rank)},
                  {"note", row.note}}};
   say_row_made(made);
   return made;

@@ -48,7 +48,7 @@ struct ShownRelief {
 };
 [[nodiscard]] ShownRelief shown_relief(const ReliefStudy& study, std::span<const Vec3> directions, int threads);
 
-/// What is seen of an object. All but `objective` is measured in a path-traced picture.
+/// What is seen of an object. All but `objective` and the normals is measured in a path-traced picture.
 struct SeenRow {
   double objective = std::nan("");      ///< SeenScore::objective
   double contrast = std::nan("");       ///< of lightness L* near the relief, exposed and clipped
@@ -56,6 +56,8 @@ struct SeenRow {
   double lit = std::nan("");            ///< share of the relief that is not in shadow
   double lit_rank = std::nan("");
   double clipped = std::nan("");  ///< share of the object that is burnt or crushed
+  /// Mean error of normals read from pictures, one per lamp (normals_read.h); and among the random placements.
+  double normals_deg = std::nan(""), normals_rank = std::nan("");
 };
 
 struct HighlightRow {

@@ -12,6 +12,7 @@
 #include "core/highlight/lights/judged_lights.h"
 #include "core/highlight/picture/object_view.h"
 #include "core/highlight/seen/seen_selection.h"
+#include "tools/bench/highlight/normals_read.h"
 #include "tools/bench/highlight/picture_reading.h"
 #include "tools/bench/highlight/rows.h"
 #include "tools/bench/rooms/enclosures.h"
@@ -28,7 +29,7 @@ constexpr int kSeenPlacesPerRadius = 200;
 constexpr double kSeenLowest_rad = rad_from_deg(-10);
 /// Half the window in which the picture is measured; the object is 1 m across.
 constexpr double kSeenWindow_m = 0.02;
-constexpr int kSeenPicture_px = 160, kSeenPasses = 2;
+constexpr int kSeenPicture_px = 160, kSeenPasses = 2, kSeenNormals_px = 48;
 constexpr double kSeenTarget_s = 3;
 /// Of the lux that one lamp can give, as HeadAims: an eye or a camera does not adapt to less.
 constexpr double kSeenDarkest = 0.1;
@@ -61,6 +62,7 @@ struct SeenCase {
   RayScene alone, room;
   CutAwayCamera view;
   std::shared_ptr<const SeenContrast> seen, quick;
+  std::vector<OrientedPoint> form;  ///< of the object, as seen; for its normals
   std::vector<Vec3> places_world_m;
   Intensity intensity = make_spot(kSeenLumens, kSeenBeam_rad, kSeenField_rad);
   /// Of a closed room, evenly reflecting: Φ ρ / (A (1 - ρ)).
@@ -77,6 +79,8 @@ struct SeenCase {
     std::vector<Sight> wanted;
     for (const OrientedPoint& point : object.study().points) wanted.push_back({point.position_world_m, point.normal});
     view = camera_that_sees(alone, shown_m, wanted, 0.9, rad_from_deg(35), kSeenPicture_px, kSeenPicture_px);
+    form = view_at(kSeenNormals_px).samples;
+    form.resize(view_at(kSeenNormals_px).object_samples);
     seen = contrast_at(96);
     quick = contrast_at(48);
     for (const double radius_m : kSeenPlaceRadii_m)
@@ -88,13 +92,36 @@ struct SeenCase {
                                                  std::sqrt(1 - up * up) * std::sin(around_rad), up));
       }
   }
-  [[nodiscard]] std::shared_ptr<const SeenContrast> contrast_at(int across_px) const {
+  [[nodiscard]] SeenView view_at(int across_px) const {
     SeenViewOptions how;
     how.threads = options.threads;
     how.across_px = across_px;
     auto made = see_object(room, alone, view.camera.eye_world_m, how);
     LUXRIG_CHECK(made, "{}", made.error().detail);
-    return std::make_shared<const SeenContrast>(std::vector{std::move(*made)}, SeenWishes{});
+    return std::move(*made);
+  }
+  [[nodiscard]] std::shared_ptr<const SeenContrast> contrast_at(int across_px) const {
+    return std::make_shared<const SeenContrast>(std::vector{view_at(across_px)}, SeenWishes{});
+  }
+  /// Of normals read from one picture per lamp, at the lamp's level, without the room's light [°].
+  [[nodiscard]] double normals_deg(std::span<const PlacedHead> heads) const {
+    std::vector<LampOnSamples> lamps;
+    for (const PlacedHead& head : heads) {
+      const Mat3 turn = shortest_rotation(-Vec3::UnitZ(), head.direction);
+      LampOnSamples lamp;
+      lamp.lux.resize(form.size());
+      lux_of_aim(sight_of(room, head.position_world_m, form, options.threads), *intensity,
+                 {turn, head.position_world_m}, lamp.lux);
+      for (double& lux : lamp.lux) lux *= head.level;
+      for (const OrientedPoint& sample : form) {
+        const Vec3 to_lamp_m = head.position_world_m - sample.position_world_m;
+        lamp.towards.push_back(to_lamp_m.normalized());
+        lamp.facing_lx.push_back(head.level * intensity->intensity_cd(turn.transpose() * -lamp.towards.back()) /
+                                 to_lamp_m.squaredNorm());
+      }
+      lamps.push_back(std::move(lamp));
+    }
+    return deg_from_rad(error_of_read_normals(form, view.camera.eye_world_m, lamps, 1));
   }
 
   [[nodiscard]] SeenScore score(std::span<const PlacedHead> heads) const {
@@ -218,7 +245,8 @@ void add_seen_rows(HighlightObject& object, const BenchOptions& options, std::ve
     if (!highlight_wanted(options, name) || (options.quick && lights > 2)) continue;
     if (!of) of.emplace(object, options);
     std::mt19937_64 random(static_cast<std::uint64_t>(lights));
-    std::vector<double> objective, contrast, lit, clipped;
+    std::vector<double> objective, contrast, lit, clipped,
+        normals;  // normals: less their error, so that more is better
     for (int k = 0; k < (options.quick ? kSeenRandomQuick : kSeenRandom); ++k) {
       const std::vector<PlacedHead> heads = random_heads(*of, lights, random);
       const PictureReading read = of->reading(heads);
@@ -226,6 +254,7 @@ void add_seen_rows(HighlightObject& object, const BenchOptions& options, std::ve
       contrast.push_back(read.contrast);
       lit.push_back(read.lit);
       clipped.push_back(read.clipped);
+      normals.push_back(-of->normals_deg(heads));
     }
     std::vector<HighlightRow> set;
     const auto add = [&](const char* method, const std::vector<PlacedHead>& heads, const CallSeconds& took) {
@@ -235,6 +264,8 @@ void add_seen_rows(HighlightObject& object, const BenchOptions& options, std::ve
       row.took = took;
       row.seen = SeenRow{score.objective,           read.contrast, rank_among(contrast, read.contrast), read.lit,
                          rank_among(lit, read.lit), read.clipped};
+      row.seen->normals_deg = of->normals_deg(heads);
+      row.seen->normals_rank = rank_among(normals, -row.seen->normals_deg);
       row.note = fmt::format("fine {:.3f}; form {:.3f}; lit {:.3f}; burnt {:.3f}; crushed {:.3f}", score.fine,
                              score.form, score.lit_share, score.burnt_share, score.crushed_share);
       set.push_back(std::move(row));
@@ -252,6 +283,7 @@ void add_seen_rows(HighlightObject& object, const BenchOptions& options, std::ve
       row.seen->contrast = value_of(contrast);
       row.seen->lit = value_of(lit);
       row.seen->clipped = value_of(clipped);
+      row.seen->normals_deg = -value_of(normals);
       row.note = fmt::format("of {} placements; each column by itself", objective.size());
       set.push_back(std::move(row));
     };

@@ -15,4 +15,13 @@ namespace luxrig {
 /// the sum of five octaves of lattice noise with sharp valleys, about an eighth of the side in total.
 [[nodiscard]] Scene make_terrain(double side_m = 100, int split = 160, std::uint64_t seed = 1);
 
+/// A life-size head with neck, 32 cm high, closed. Its face looks towards -Y; the origin lies between the ears.
+[[nodiscard]] Scene make_head(double cell_m = 0.002);
+
+/// A helmet of plate with slits and a crest, 36 cm high, open below. Its face looks towards -Y.
+[[nodiscard]] Scene make_helmet(double cell_m = 0.002);
+
+/// A slab of 36 × 16 cm with capitals cut into it, grooves of 5 mm with sides of 45°; its front faces -Y.
+[[nodiscard]] Scene make_inscription(double cell_m = 0.0015);
+
 }  // namespace luxrig
