@@ -10,7 +10,7 @@
 namespace luxrig {
 namespace {
 
-bool is_closed(const Scene& scene) {
+bool closes(const Scene& scene) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> walked;
   for (const auto& t : scene.triangles)
     for (std::size_t k = 0; k < 3; ++k) walked[std::minmax(t[k], t[(k + 1) % 3])] += t[k] < t[(k + 1) % 3] ? 1 : -1;
@@ -27,9 +27,9 @@ double front_m(const Scene& scene, double x_m, double z_m, double within_m = 0.0
 }
 
 TEST(ReliefTargets, AreClosed) {
-  EXPECT_TRUE(is_closed(make_head(0.004)));
-  EXPECT_TRUE(is_closed(make_helmet(0.004)));
-  EXPECT_TRUE(is_closed(make_inscription(0.003)));
+  EXPECT_TRUE(closes(make_head(0.004)));
+  EXPECT_TRUE(closes(make_helmet(0.004)));
+  EXPECT_TRUE(closes(make_inscription(0.003)));
 }
 
 TEST(ReliefTargets, TheHeadHasANoseBeforeItsCheeksAndEyesBehindItsBrow) {
