@@ -18,6 +18,7 @@ struct MadeUpObject {
 constexpr MadeUpObject kMadeUpObjects[] = {
     {"relief", [] { return make_carved_relief(); }}, {"relief-10mm", [] { return make_carved_relief(0.010); }},
     {"terrain", [] { return make_terrain(); }},      {"head", [] { return make_head(); }},
+                                           {"head-4mm", [] { return make_head(0.004); }},
     {"helmet", [] { return make_helmet(); }},        {"inscription", [] { return make_inscription(); }}};
 
 void write_obj(const Scene& scene, const char* name, std::ostream& out) {
