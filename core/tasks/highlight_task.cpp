@@ -57,13 +57,14 @@ std::vector<Vec3> hangable_places(const LightDomain& domain, const Mounting& mou
   return places;
 }
 
-PotentialLights hangable_lights(const PotentialLights& all, const Mounting& mounting) {
+template <class Fits>
+PotentialLights hangable_lights(const PotentialLights& all, const Mounting& mounting, const Fits& fits) {
   PotentialLights kept;
   kept.features = all.features;
   kept.points_of_feature = all.points_of_feature;
   for (std::size_t l = 0; l < all.lights.size(); ++l) {
     const auto snapped = mounting.snapped(all.lights[l].position_world_m);
-    if (!snapped) continue;
+    if (!snapped || !fits(snapped->place_world_m)) continue;
     kept.lights.push_back(all.lights[l]);
     kept.lights.back().position_world_m = snapped->place_world_m;
     const auto votes = all.of(l);
@@ -71,6 +72,18 @@ PotentialLights hangable_lights(const PotentialLights& all, const Mounting& moun
     kept.begin.push_back(kept.votes.size());
   }
   return kept;
+}
+
+/// Where lights of a window would hang, as far off as the mounting's middle.
+std::string middles_of(const SeenObject& seen, const StudiedObject& object, const Mounting& mounting) {
+  const Vec3 middle_world_m = object.study.surface.centroid_world_m();
+  const double distance_m =
+      std::max((mounting.box_world_m().center() - middle_world_m).norm(), object.study.surface.diagonal_m());
+  const auto there = [&](int side) {
+    const Vec3 at_m = middle_world_m + distance_m * seen.window.middle(side);
+    return fmt::format("{:.2f} {:.2f} {:.2f}", at_m.x(), at_m.y(), at_m.z());
+  };
+  return fmt::format("{} m {} {} m", there(-1), seen.window.lights() == 2 ? "and" : "or", there(1));
 }
 
 HangingHead new_head(const Rig& rig, const Luminaire& luminaire, const Vec3& place_world_m, const Vec3& direction) {
@@ -91,24 +104,35 @@ void take_evenly(const List& list, std::size_t most, const Take& take) {
   for (std::size_t k = 0; k < count; ++k) take(list[k * list.size() / count]);
 }
 
+Vec3 middle_of_wanted(const SeenObject& seen) {
+  Vec3 middle_world_m = Vec3::Zero();
+  const std::vector<float>& wanted = seen.quick_asked.role.wanted;
+  for (std::size_t s = 0; s < wanted.size(); ++s)
+    middle_world_m += double(wanted[s]) * seen.quick->samples()[s].position_world_m;
+  return middle_world_m;
+}
+
 /// Places and first aims, by the coarse picture: among those of most contrast, and places all over the domain with the
 /// beam on the object's middle.
 Result<std::vector<JudgedLight>> lights_by_what_is_seen(const ReliefSurroundings& around, const StudiedObject& object,
                                                         const Task& task, const JudgedLights& judge,
-                                                        std::span<const Vec3> places, std::span<const double> fixed_lux,
+                                                        std::span<const Vec3> places, const SeenObject& seen,
                                                         const ComputeOptions& options) {
   const HighlightSpec& spec = task.highlight;
   const Luminaire& luminaire = around.rig.luminaires[spec.luminaire];
-  const auto seen = seen_object(around, object, spec.relief, fixed_lux, options);
-  if (!seen) return tl::unexpected(seen.error());
   const Vec3 middle_world_m = object.study.surface.centroid_world_m();
+  const Vec3 aim_world_m = spec.relief.role == LightRole::background ? middle_of_wanted(seen) : middle_world_m;
   std::vector<SeenCandidate> candidates;
+  const auto side_of = [&](const Vec3& place_m) {
+    return seen.window.lights() == 2 ? seen.window.side_of(place_m - middle_world_m) : 0;
+  };
   std::vector<HangingHead> for_reflection;
   take_evenly(judge.candidates(), kSeenCandidates, [&](const JudgedLight& one) {
-    candidates.push_back({one.position_world_m, one.direction});
+    candidates.push_back({one.position_world_m, one.direction, side_of(one.position_world_m)});
   });
   take_evenly(places, kSeenCandidates, [&](const Vec3& place_m) {
-    if ((middle_world_m - place_m).norm() > 0) candidates.push_back({place_m, (middle_world_m - place_m).normalized()});
+    if ((aim_world_m - place_m).norm() > 0)
+      candidates.push_back({place_m, (aim_world_m - place_m).normalized(), side_of(place_m)});
   });
   take_evenly(candidates, kReflectionSamples, [&](const SeenCandidate& one) {
     for_reflection.push_back(new_head(around.rig, luminaire, one.position_world_m, one.direction));
@@ -117,14 +141,19 @@ Result<std::vector<JudgedLight>> lights_by_what_is_seen(const ReliefSurroundings
   if (!reflected_lx) return tl::unexpected(reflected_lx.error());
   SeenSelectionOptions how;
   how.run() = options.of_part();
+  how.role = seen.quick_asked.role;
   for (const double one : *reflected_lx) how.reflected_lx += one / static_cast<double>(reflected_lx->size());
-  const SeenSelection selection(*seen->quick, around.rays, std::move(candidates), *luminaire.intensity,
-                                seen->quick_fixed_lux, how);
-  const std::vector<SeenChoice> by_number = selection.up_to(spec.lights.value_or(spec.max_lights));
+  const SeenSelection selection(*seen.quick, around.rays, std::move(candidates), *luminaire.intensity,
+                                seen.quick_fixed_lux, how);
+  const std::optional<int> number = seen.window.lights() ? seen.window.lights() : spec.lights;
+  const std::vector<SeenChoice> by_number = selection.up_to(number.value_or(spec.max_lights));
   if (by_number.empty()) return refusal("no light that may hang somewhere lights what is seen of the object");
   std::vector<double> objective;
   for (const SeenChoice& choice : by_number) objective.push_back(choice.score.objective);
-  const SeenChoice& chosen = spec.lights ? by_number.back() : by_number[number_at_peak(objective)];
+  if (seen.window.lights() && by_number.size() < static_cast<std::size_t>(*seen.window.lights()))
+    return refusal(
+        fmt::format("{}, and the mounting has no place on one of them: widen [mounting]", seen.window.words()));
+  const SeenChoice& chosen = number ? by_number.back() : by_number[number_at_peak(objective)];
   std::vector<JudgedLight> lights;
   for (const std::size_t c : chosen.candidates)
     lights.push_back({selection.candidates()[c].position_world_m, selection.candidates()[c].direction, 0, {}});
@@ -162,24 +191,6 @@ Result<PlacedReliefLights> find_relief_lights(const ReliefSurroundings& around, 
   of_lights.run() = options.of_part();
   const auto potential = potential_lights(*votes, of_lights);
   if (!potential) return refuse(potential.error());
-  const std::vector<Vec3> places = hangable_places(*domain, mounting);
-  if (places.empty())
-    return refusal(
-        fmt::format("task \"{}\": lights may hang at none of {} places: widen box_m or offset_m of "
-                    "[mounting], or lower clearance_m",
-                    task.name, domain->cell_centres().size()));
-
-  before->say("judging lights");
-  JudgedLightOptions of_judge;
-  of_judge.surroundings.environment = &environment;
-  of_judge.lift_m = 1e-4 * study.surface.diagonal_m();
-  of_judge.coverage_weight = spec.relief.coverage_weight;
-  of_judge.run() = options.of_part();
-  const auto judge = JudgedLights::make(study.surface, study.rays, study.interest, study.features, places,
-                                        hangable_lights(*potential, mounting), luminaire.intensity, of_judge);
-  if (!judge) return refuse(judge.error());
-  PlacedReliefLights found;
-  JudgedLightSet chosen;
   std::optional<std::vector<double>> fixed;
   const auto light_that_stays = [&]() -> Result<void> {
     auto lux = staying_lux(around, object, options);
@@ -187,9 +198,42 @@ Result<PlacedReliefLights> find_relief_lights(const ReliefSurroundings& around, 
     fixed = std::move(*lux);
     return {};
   };
+  std::optional<SeenObject> seen;
   if (spec.relief.seen) {
     if (auto known = light_that_stays(); !known) return refuse(known.error());
-    auto lights = lights_by_what_is_seen(around, object, task, *judge, places, *fixed, options);
+    auto looked_at = seen_object(around, object, spec.relief, *fixed, options);
+    if (!looked_at) return refuse(looked_at.error());
+    seen = std::move(*looked_at);
+  }
+  const Vec3 middle_world_m = study.surface.centroid_world_m();
+  const auto in_window = [&](const Vec3& place_m) {
+    return !seen || seen->window.open() || seen->window.has(place_m - middle_world_m);
+  };
+  std::vector<Vec3> places = hangable_places(*domain, mounting);
+  if (places.empty())
+    return refusal(
+        fmt::format("task \"{}\": lights may hang at none of {} places: widen box_m or offset_m of "
+                    "[mounting], or lower clearance_m",
+                    task.name, domain->cell_centres().size()));
+
+  std::erase_if(places, [&](const Vec3& place_m) { return !in_window(place_m); });
+  if (places.empty())
+    return refusal(fmt::format("task \"{}\": {}, and nothing may hang there: widen [mounting], for instance to {}",
+                               task.name, seen->window.words(), middles_of(*seen, object, mounting)));
+  before->say("judging lights");
+  JudgedLightOptions of_judge;
+  of_judge.surroundings.environment = &environment;
+  of_judge.lift_m = 1e-4 * study.surface.diagonal_m();
+  of_judge.coverage_weight = spec.relief.coverage_weight;
+  of_judge.run() = options.of_part();
+  const auto judge =
+      JudgedLights::make(study.surface, study.rays, study.interest, study.features, places,
+                         hangable_lights(*potential, mounting, in_window), luminaire.intensity, of_judge);
+  if (!judge) return refuse(judge.error());
+  PlacedReliefLights found;
+  JudgedLightSet chosen;
+  if (seen) {
+    auto lights = lights_by_what_is_seen(around, object, task, *judge, places, *seen, options);
     if (!lights) return refuse(lights.error());
     chosen.lights = std::move(*lights);
   } else if (spec.lights) {
@@ -220,23 +264,36 @@ Result<PlacedReliefLights> find_relief_lights(const ReliefSurroundings& around, 
   std::vector<HangingHead> heads;
   for (const JudgedLight& light : chosen.lights)
     heads.push_back(new_head(around.rig, luminaire, light.position_world_m, light.direction));
-  if (spec.relief.seen)
-    if (auto added = wish_what_is_seen(around, object, spec.relief, *fixed, heads, wishes, options); !added)
+  if (seen)
+    if (auto added = wish_what_is_seen(around, object, *seen, heads, wishes, options); !added)
       return refuse(added.error());
   wishes.fixed_lux = std::move(*fixed);
+  const AimWishes of_relief = wishes;
+  const std::vector<HangingHead> hung = heads;
+  const LitPlaces lit = lit_places(object, spec.relief, seen ? &*seen : nullptr, wishes);
   AimOptions aim;
   aim.run() = options.of_part();
   aim.watch.stop = stage.stop();
   const auto search =
-      HeadAims::make(object.samples, study.features, around.rays, std::move(heads), std::move(wishes), aim);
+      HeadAims::make(*lit.samples, *lit.features, around.rays, std::move(heads), std::move(wishes), aim);
   if (!search) return refuse(search.error());
   auto aimed = search->solve();
   if (!aimed) return refuse(aimed.error());
   found.score = std::move(aimed->score);
   found.tried = aimed->tried;
+  if (lit.own) {
+    std::vector<HeadSetting> settings;
+    for (const AimedHead& one : aimed->heads) settings.push_back(one.setting);
+    judge_relief(around, object, hung, settings, of_relief, aim, found.score);
+  }
+  if (seen) found.asked = std::move(seen->asked);
   for (std::size_t l = 0; l < aimed->heads.size(); ++l) {
     const AimedHead& head = aimed->heads[l];
-    if (!(head.setting.level > 0)) continue;  // the limits leave it no light
+    if (!(head.setting.level > 0)) {
+      found.dark_gains.push_back(aimed->gain_if_lit[l]);
+      continue;
+    }
+    found.without.push_back(std::move(aimed->without[l]));
     LightInScene light;
     light.position_world_m = chosen.lights[l].position_world_m;
     light.aim_world_m = head.aim_world_m;

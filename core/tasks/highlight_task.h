@@ -13,6 +13,9 @@ struct PlacedReliefLights {
   AimScore score;
   std::vector<double> contrast_lx;  ///< of one light, two, … at full level; empty if the number was given
   std::size_t tried = 0;
+  std::vector<AimScore> without;   ///< per light: the score with it dark
+  std::vector<double> dark_gains;  ///< of lights that were chosen and stay dark: AimResult::gain_if_lit
+  AskedOfLight asked;              ///< by the task's role
 };
 
 /// Refuses with a reason if no light that may hang brings out any of the object's relief.

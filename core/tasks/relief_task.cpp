@@ -163,6 +163,49 @@ void add_limits_of_eyes(const ReliefSurroundings& around, const AimSpec& aim, st
     limits.push_back({camera.name + " (camera)", {camera.position_world_m, Vec3::Zero()}, *aim.max_eye_lx, 0});
 }
 
+/// Sets of heads of which one shall be lit: all, or those that a window allows.
+Result<std::vector<std::vector<std::size_t>>> heads_to_try(std::span<const HangingHead> heads,
+                                                           const LightWindow& window, const Vec3& middle_world_m) {
+  std::vector<std::vector<std::size_t>> choices;
+  std::vector<std::size_t> inside;
+  double distance_m = 0;
+  for (std::size_t k = 0; k < heads.size(); ++k) {
+    const Vec3 towards_m = heads[k].world_from_mount.translation_m - middle_world_m;
+    distance_m += towards_m.norm() / static_cast<double>(heads.size());
+    if (window.open() || (towards_m.norm() > 0 && window.has(towards_m))) inside.push_back(k);
+  }
+  const auto side_of = [&](std::size_t k) {
+    return window.side_of(heads[k].world_from_mount.translation_m - middle_world_m);
+  };
+  if (!window.lights()) {
+    if (!inside.empty()) choices.push_back(inside);
+  } else if (*window.lights() == 1) {
+    for (const std::size_t k : inside) choices.push_back({k});
+  } else {
+    for (const std::size_t left : inside)
+      for (const std::size_t right : inside)
+        if (side_of(left) < 0 && side_of(right) > 0) choices.push_back({std::min(left, right), std::max(left, right)});
+  }
+  if (!choices.empty()) return choices;
+  const auto there = [&](int side) {
+    const Vec3 at_m = middle_world_m + distance_m * window.middle(side);
+    return fmt::format("{:.2f} {:.2f} {:.2f}", at_m.x(), at_m.y(), at_m.z());
+  };
+  const auto missing = [&](int side) {
+    return std::none_of(inside.begin(), inside.end(), [&](std::size_t k) { return side_of(k) == side; });
+  };
+  std::string where;
+  if (window.lights() == 2)
+    where = missing(-1) && missing(1) ? there(-1) + " and " + there(1) : there(missing(-1) ? -1 : 1);
+  else
+    where = there(-1) == there(1) ? there(1) : there(-1) + " or " + there(1);
+  return refusal(
+      fmt::format("{}, and {} of its heads hangs there: hang one at {} m, as seen from the object's middle at "
+                  "{:.2f} {:.2f} {:.2f} m, or name other heads",
+                  window.words(), window.lights() == 2 ? "no pair" : "none", where, middle_world_m.x(),
+                  middle_world_m.y(), middle_world_m.z()));
+}
+
 }  // namespace
 
 Result<StudiedObject> study_object(const Session& session, const ReliefSpec& relief, const ComputeOptions& options) {
@@ -254,24 +297,96 @@ Result<AimedFixtures> aim_fixtures(const ReliefSurroundings& around, const Studi
     heads.back().may_light = [&zones, head = spec.heads[k]](const Joints& at) { return !zones.met(head, at); };
     present.push_back({joints, 0, present_levels[k]});
   }
-  if (spec.relief.seen)
-    if (auto added = wish_what_is_seen(around, object, spec.relief, *fixed, heads, wishes, options); !added)
-      return in_words(added.error(), fmt::format("task \"{}\"", task.name));
+  const auto refuse = [&](const Fault& fault) { return in_words(fault, fmt::format("task \"{}\"", task.name)); };
+  std::optional<SeenObject> seen;
+  std::vector<std::vector<std::size_t>> choices = {std::vector<std::size_t>(heads.size())};
+  std::iota(choices[0].begin(), choices[0].end(), std::size_t{0});
+  if (spec.relief.seen) {
+    auto found = seen_object(around, object, spec.relief, *fixed, options);
+    if (!found) return refuse(found.error());
+    seen = std::move(*found);
+    if (auto added = wish_what_is_seen(around, object, *seen, heads, wishes, options); !added)
+      return refuse(added.error());
+    auto in_window = heads_to_try(heads, seen->window, object.study.surface.centroid_world_m());
+    if (!in_window) return refuse(in_window.error());
+    choices = std::move(*in_window);
+  }
   wishes.fixed_lux = std::move(*fixed);
   AimOptions aim;
   aim.run() = options.of_part();
   aim.watch.stop = stage.stop();
-  const auto search =
-      HeadAims::make(object.samples, object.study.features, around.rays, std::move(heads), std::move(wishes), aim);
-  if (!search) return in_words(search.error(), fmt::format("task \"{}\"", task.name));
-  auto found = search->solve();
-  if (!found) return in_words(found.error(), fmt::format("task \"{}\"", task.name));
+  const AimWishes of_relief = wishes;
+  const LitPlaces places = lit_places(object, spec.relief, seen ? &*seen : nullptr, wishes);
+  const auto of_heads = [&](const std::vector<std::size_t>& chosen) {
+    std::vector<HangingHead> some;
+    for (const std::size_t k : chosen) some.push_back(heads[k]);
+    return HeadAims::make(*places.samples, *places.features, around.rays, std::move(some), wishes, aim);
+  };
+  std::optional<AimResult> best;
+  std::optional<HeadAims> of_all;
+  std::vector<std::size_t> lit;
+  std::size_t tried = 0;
+  Fault trouble;
+  for (const std::vector<std::size_t>& chosen : choices) {
+    if (best && stage.stop().stop_requested()) break;
+    auto search = of_heads(chosen);
+    auto found = search ? search->solve() : tl::unexpected(search.error());
+    if (!found) {
+      trouble = found.error();
+      continue;
+    }
+    tried += found->tried;
+    if (chosen.size() == heads.size()) of_all = std::move(*search);
+    if (best && found->score.objective <= best->score.objective) continue;
+    best = std::move(*found);
+    lit = chosen;
+  }
+  if (!best) return refuse(trouble);
   AimedFixtures aimed;
-  aimed.heads = std::move(found->heads);
-  aimed.score = std::move(found->score);
-  aimed.before = search->score(present);
-  aimed.tried = found->tried;
+  aimed.score = std::move(best->score);
+  aimed.tried = tried;
+  for (std::size_t k = 0; k < heads.size(); ++k) {
+    const auto at = std::find(lit.begin(), lit.end(), k) - lit.begin();
+    if (static_cast<std::size_t>(at) < lit.size()) {
+      aimed.heads.push_back(best->heads[static_cast<std::size_t>(at)]);
+      aimed.without.push_back(std::move(best->without[static_cast<std::size_t>(at)]));
+      aimed.gain_if_lit.push_back(best->gain_if_lit[static_cast<std::size_t>(at)]);
+    } else {
+      aimed.heads.push_back({{heads[k].present, 0, 0}, Vec3::Zero(), true});
+      aimed.without.push_back(aimed.score);
+      aimed.gain_if_lit.push_back(std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+  if (!of_all) {
+    std::vector<std::size_t> all(heads.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    auto search = of_heads(all);
+    if (!search) return refuse(search.error());
+    of_all = std::move(*search);
+  }
+  aimed.before = of_all->score(present);
+  if (places.own) {
+    std::vector<HeadSetting> settings;
+    for (const AimedHead& one : aimed.heads) settings.push_back(one.setting);
+    judge_relief(around, object, heads, settings, of_relief, aim, aimed.score);
+    judge_relief(around, object, heads, present, of_relief, aim, aimed.before);
+  }
+  if (seen) aimed.asked = std::move(seen->asked);
   return aimed;
+}
+
+void judge_relief(const ReliefSurroundings& around, const StudiedObject& object, std::vector<HangingHead> heads,
+                  std::span<const HeadSetting> settings, const AimWishes& wishes, const AimOptions& options,
+                  AimScore& score) {
+  const auto judge =
+      HeadAims::make(object.samples, object.study.features, around.rays, std::move(heads), wishes, options);
+  AimScore of_relief;
+  of_relief.local_contrast_lx = of_relief.relative_contrast = of_relief.coverage =
+      std::numeric_limits<double>::quiet_NaN();
+  if (judge) of_relief = judge->score(settings);
+  score.local_contrast_lx = of_relief.local_contrast_lx;
+  score.relative_contrast = of_relief.relative_contrast;
+  score.coverage = of_relief.coverage;
 }
 
 tl::unexpected<Fault> in_words(Fault fault, const std::string& of) {

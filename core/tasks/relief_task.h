@@ -7,6 +7,7 @@
 #include "core/highlight/surface/relief_study.h"
 #include "core/rig/rig.h"
 #include "core/scene/ray_scene.h"
+#include "core/tasks/light_role.h"
 #include "core/tasks/session.h"
 
 namespace luxrig {
@@ -35,10 +36,14 @@ struct AimedFixtures {
   std::vector<AimedHead> heads;  ///< one per head of the task
   AimScore score, before;        ///< `before`: with the aims and levels at the start
   std::size_t tried = 0;
+  std::vector<AimScore> without;    ///< per head: the score with that head dark
+  std::vector<double> gain_if_lit;  ///< AimResult
+  AskedOfLight asked;               ///< by the task's role
 };
 
 /// present_levels: of the heads, for AimedFixtures::before. Refuses if no head sees the object, or if light that stays
-/// exceeds a limit by itself.
+/// exceeds a limit by itself. Of a set-up, only as many heads are lit as it has, all in its window; refuses, saying what to
+/// hang where, if none hangs there. Of a rim light, only those behind the object.
 [[nodiscard]] Result<AimedFixtures> aim_fixtures(const ReliefSurroundings& around, const StudiedObject& object,
                                                  const Task& task, std::span<const double> present_levels,
                                                  const ComputeOptions& options);
@@ -50,6 +55,12 @@ struct AimedFixtures {
 /// Light that stays at each of the object's samples [lx].
 [[nodiscard]] Result<std::vector<double>> staying_lux(const ReliefSurroundings& around, const StudiedObject& object,
                                                       const ComputeOptions& options);
+
+/// Contrast and coverage of the object's relief by heads that were judged elsewhere (LitPlaces); NaN if none of them sees
+/// it. Replaces those of `score`.
+void judge_relief(const ReliefSurroundings& around, const StudiedObject& object, std::vector<HangingHead> heads,
+                  std::span<const HeadSetting> settings, const AimWishes& wishes, const AimOptions& options,
+                  AimScore& score);
 
 /// All light, direct and reflected, at the object's brightest places.
 struct ObjectLight {

@@ -65,6 +65,7 @@ Result<SeenObject> seen_object(const ReliefSurroundings& around, const StudiedOb
     SeenViewOptions how;
     how.run() = options.of_part();
     how.across_px = across_px;
+    how.surroundings = relief.role == LightRole::background;
     std::vector<SeenView> views;
     for (const Vec3& eye_world_m : eyes) {
       auto view = see_object(around.rays, alone, eye_world_m, how);
@@ -72,17 +73,42 @@ Result<SeenObject> seen_object(const ReliefSurroundings& around, const StudiedOb
       if (!view) return tl::unexpected(view.error());
       views.push_back(std::move(*view));
     }
-    return std::make_shared<const SeenContrast>(std::move(views), SeenWishes{});
+    return std::make_shared<const SeenContrast>(std::move(views), wishes_of(relief));
   };
   const bool several = eyes.size() > 1;
   auto fine = contrast_at(several ? kFineOfSeveral_px : kFine_px),
        quick = contrast_at(several ? kQuickOfSeveral_px : kQuick_px);
   if (!fine) return tl::unexpected(fine.error());
   if (!quick) return tl::unexpected(quick.error());
-  SeenObject seen{std::move(*fine), std::move(*quick), {}, {}};
+  const Vec3 middle_world_m = object.study.surface.centroid_world_m();
+  SeenObject seen{std::move(*fine), std::move(*quick), {}, {}, {}, {}, LightWindow({}, {}, {})};
   seen.fixed_lux = spread_over(*seen.fine, object, fixed_lux, options.threads);
   seen.quick_fixed_lux = spread_over(*seen.quick, object, fixed_lux, options.threads);
+  auto asked = asked_of_light(relief, *seen.fine, middle_world_m, eyes[0], seen.fixed_lux),
+       quick_asked = asked_of_light(relief, *seen.quick, middle_world_m, eyes[0], seen.quick_fixed_lux);
+  if (!asked) return tl::unexpected(asked.error());
+  seen.asked = std::move(*asked);
+  if (quick_asked) {
+    seen.quick_asked = std::move(*quick_asked);
+  } else {
+    seen.quick = seen.fine;  // too coarse to tell what is asked
+    seen.quick_fixed_lux = seen.fixed_lux;
+    seen.quick_asked = seen.asked;
+  }
+  seen.window = LightWindow(relief.set_up, relief.role, set_up_frame(*seen.fine, middle_world_m, eyes[0]));
   return seen;
+}
+
+LitPlaces lit_places(const StudiedObject& object, const ReliefSpec& relief, const SeenObject* seen, AimWishes& wishes) {
+  LitPlaces places{&object.samples, &object.study.features, {}};
+  if (!seen || (relief.role != LightRole::background && relief.role != LightRole::rim)) return places;
+  places.own = std::make_unique<WantedPlaces>(wanted_places(*seen->fine, seen->asked.role, kAimPoints));
+  places.samples = &places.own->samples;
+  places.features = &places.own->features;
+  // The object's own places are among the limits.
+  wishes.max_object_lx = std::numeric_limits<double>::infinity();
+  wishes.fixed_lux.clear();
+  return places;
 }
 
 Result<std::vector<double>> reflected_lx_of(const ReliefSurroundings& around, const StudiedObject& object,
@@ -123,21 +149,20 @@ Result<std::vector<double>> reflected_lx_of(const ReliefSurroundings& around, co
   return reflected_lx;
 }
 
-Result<void> wish_what_is_seen(const ReliefSurroundings& around, const StudiedObject& object, const ReliefSpec& relief,
-                               std::span<const double> fixed_lux, std::span<HangingHead> heads, AimWishes& wishes,
-                               const ComputeOptions& options) {
+Result<void> wish_what_is_seen(const ReliefSurroundings& around, const StudiedObject& object, const SeenObject& seen,
+                               std::span<HangingHead> heads, AimWishes& wishes, const ComputeOptions& options) {
   ComputeOptions to_the_end = options;  // a stop ends the search for aims with the best so far
   to_the_end.watch = options.watch.without_stop();
-  auto seen = seen_object(around, object, relief, fixed_lux, to_the_end);
-  if (!seen) return tl::unexpected(seen.error());
   const auto reflected_lx = reflected_lx_of(around, object, heads, to_the_end);
   if (!reflected_lx) return tl::unexpected(reflected_lx.error());
   for (std::size_t k = 0; k < heads.size(); ++k) heads[k].reflected_lx = (*reflected_lx)[k];
   wishes.measure = AimMeasure::seen;
-  wishes.seen = std::move(seen->fine);
-  wishes.seen_quick = std::move(seen->quick);
-  wishes.seen_fixed_lux = std::move(seen->fixed_lux);
-  wishes.seen_quick_fixed_lux = std::move(seen->quick_fixed_lux);
+  wishes.seen = seen.fine;
+  wishes.seen_quick = seen.quick;
+  wishes.seen_fixed_lux = seen.fixed_lux;
+  wishes.seen_quick_fixed_lux = seen.quick_fixed_lux;
+  wishes.role = seen.asked.role;
+  wishes.quick_role = seen.quick_asked.role;
   return {};
 }
 

@@ -12,6 +12,24 @@
 #include "core/tasks/task_solver.h"
 
 namespace luxrig {
+namespace {
+
+ReliefReasons reasons_of(const Task& task, const ReliefSpec& relief, const AimScore& score) {
+  ReliefReasons reasons;
+  reasons.task = task.name;
+  reasons.seen = relief.seen;
+  reasons.role = relief.role;
+  reasons.set_up = relief.set_up;
+  reasons.score = score;
+  return reasons;
+}
+
+void add_dark(ReliefReasons& reasons, double gain) {
+  ++reasons.dark;
+  if (std::isfinite(gain)) reasons.gain_of_dark = std::max(gain, reasons.gain_of_dark.value_or(gain));
+}
+
+}  // namespace
 
 Result<ReliefSurroundings> TaskSolver::surroundings(std::vector<bool> sought, const Task& task) const {
   const auto max_watts = watts_left(0, 0, task);
@@ -24,7 +42,7 @@ Result<ReliefSurroundings> TaskSolver::surroundings(std::vector<bool> sought, co
 
 Result<void> TaskSolver::settle_relief(const Task& task, const ReliefSpec& spec, const ReliefSurroundings& around,
                                        const StudiedObject& object, const AimScore& score, const AimScore* before,
-                                       PlannedTask& planned) {
+                                       const AskedOfLight& asked, PlannedTask& planned) {
   // A stop ends the search, not the use of its result.
   ComputeOptions to_the_end = options_;
   to_the_end.watch = options_.watch.without_stop();
@@ -46,6 +64,7 @@ Result<void> TaskSolver::settle_relief(const Task& task, const ReliefSpec& spec,
   relief.coverage = score.coverage;
   relief.relative_contrast = score.relative_contrast;
   relief.object_lux = light->brightest_lx(share);
+  if (score.role) relief.key_to_fill = ratio_of(spec.role, asked, share * score.role->wanted_lx);
   if (std::isfinite(score.key_to_fill)) relief.key_to_fill = score.key_to_fill;
   if (before) {
     relief.before_local_contrast_lx = before->local_contrast_lx;
@@ -100,11 +119,21 @@ Result<void> TaskSolver::aim(const Task& task) {
   if (auto lit = light_anew(look()); !lit) return lit;
 
   PlannedTask planned;
-  if (auto settled = settle_relief(task, task.aim.relief, *around, *object, aimed->score, &aimed->before, planned);
+  if (auto settled =
+          settle_relief(task, task.aim.relief, *around, *object, aimed->score, &aimed->before, aimed->asked, planned);
       !settled)
     return settled;
   list(planned, 0, own_);
   planned.iterations = static_cast<int>(aimed->tried);
+  ReliefReasons reasons = reasons_of(task, task.aim.relief, aimed->score);
+  reasons.before = aimed->before;
+  std::vector<LitAlone> lit;
+  for (std::size_t k = 0; k < heads.size(); ++k) {
+    lit.push_back({housing_name(rig_, heads[k]), aimed->heads[k].setting.level, &aimed->without[k]});
+    if (!(lit.back().level > 0)) add_dark(reasons, aimed->gain_if_lit[k]);
+  }
+  reasons.lights = services_of(aimed->score, lit);
+  reasons_.push_back(std::move(reasons));
   planned.seconds = seconds_since(start);
   plan_.tasks.push_back(std::move(planned));
   return {};
@@ -133,7 +162,8 @@ Result<void> TaskSolver::highlight(const Task& task) {
   const ReliefSurroundings around{
       rig_, session_.scene, *session_.rays, look(), std::move(sought), dark->point_lux, dark->max_watts};
   PlannedTask planned;
-  if (auto settled = settle_relief(task, spec.relief, around, *object, found->score, nullptr, planned); !settled)
+  if (auto settled = settle_relief(task, spec.relief, around, *object, found->score, nullptr, found->asked, planned);
+      !settled)
     return settled;
   list(planned, before, level_.size());
   for (Index j = 0; j < own_; ++j) planned.fixtures.push_back(light_of(j));
@@ -141,6 +171,14 @@ Result<void> TaskSolver::highlight(const Task& task) {
     planned.numbers.push_back(
         {static_cast<int>(k) + 1, std::numeric_limits<double>::quiet_NaN(), found->contrast_lx[k]});
   planned.iterations = static_cast<int>(found->tried);
+  ReliefReasons reasons = reasons_of(task, spec.relief, found->score);
+  std::vector<LitAlone> lit;
+  for (std::size_t l = 0; l < found->lights.size(); ++l)
+    lit.push_back({housing_name(rig_, static_cast<std::size_t>(before) + l * emitters), found->lights[l].level,
+                   &found->without[l]});
+  for (const double gain : found->dark_gains) add_dark(reasons, gain);
+  reasons.lights = services_of(found->score, lit);
+  reasons_.push_back(std::move(reasons));
   planned.seconds = seconds_since(start);
   plan_.tasks.push_back(std::move(planned));
   return {};

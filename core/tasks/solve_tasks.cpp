@@ -125,7 +125,7 @@ SolvedTasks TaskSolver::done() {
     for (PlannedPoint& point : plan_.points) point.goal_lux.reset();
   judge(plan_, rig_.control.goal_tolerance);
   plan_.seconds = seconds_since(start_);
-  return {std::move(plan_), std::move(rig_), look(), std::move(transport_), std::move(used_)};
+  return {std::move(plan_), std::move(rig_), look(), std::move(transport_), std::move(used_), std::move(reasons_)};
 }
 
 PlannedLight TaskSolver::light_of(Index light) const {

@@ -3,6 +3,7 @@
 
 #include "core/plan/plan.h"
 #include "core/result.h"
+#include "core/tasks/relief_reasons.h"
 #include "core/tasks/session.h"
 
 namespace luxrig {
@@ -13,6 +14,7 @@ struct SolvedTasks {
   Look look;                        ///< levels and joints of the plan
   TransportMatrix transport;        ///< of that rig and look
   std::optional<ModelUsed> anew{};  ///< how `transport` was computed, if it is no longer the one given
+  std::vector<ReliefReasons> reasons{};  ///< of its tasks of kind "aim" and "highlight", in their order
 };
 
 /// Solves all tasks. Goals and limits count all light, daylight too. Light set or placed by a task counts in the next.

@@ -70,7 +70,7 @@ class TaskSolver {
   /// light included. Fills `planned`, except for list(). before: none for lights that did not hang.
   Result<void> settle_relief(const Task& task, const ReliefSpec& spec, const ReliefSurroundings& around,
                              const StudiedObject& object, const AimScore& score, const AimScore* before,
-                             PlannedTask& planned);
+                             const AskedOfLight& asked, PlannedTask& planned);
 
   const Session& session_;
   const ComputeOptions& options_;
@@ -85,6 +85,7 @@ class TaskSolver {
   Eigen::VectorXd level_;
   std::vector<std::string> why_;
   Plan plan_;
+  std::vector<ReliefReasons> reasons_;
 };
 
 }  // namespace luxrig

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <memory>
 
 #include "core/tasks/solve_tasks.h"
@@ -12,6 +13,7 @@
 #include "tools/luxrig/commands.h"
 #include "tools/luxrig/compute_arguments.h"
 #include "tools/luxrig/open_session.h"
+#include "tools/luxrig/reasons_json.h"
 #include "tools/luxrig/render/opening_light.h"
 #include "tools/luxrig/transport_json.h"
 #include "tools/process/files.h"
@@ -26,7 +28,7 @@ struct SolveArguments {
   std::filesystem::path rig;
   std::optional<std::filesystem::path> output;
   ComputeOptions compute;
-  bool json = false;
+  bool json = false, explain = false;
 };
 
 std::string percent(double share) { return fmt::format("{:.1f} %", 100 * share); }
@@ -67,9 +69,6 @@ void print_placed(const PlannedTask& task, const Task& asked, bool has_emitters)
   }
   fmt::print("{}\n", lights.text());
   if (dark > 0 && !has_emitters) fmt::print("{} of them would give no light: leave them out\n", dark);
-  if (asked.highlight.lights && task.lights.size() < static_cast<std::size_t>(*asked.highlight.lights))
-    fmt::print("{} of {}: limits that lights share leave more of them nothing to give\n", task.lights.size(),
-               *asked.highlight.lights);
   if (asked.kind == TaskKind::highlight) {
     std::string tried;
     for (const PlannedNumber& number : task.numbers)
@@ -144,6 +143,16 @@ void print_directions(const PlannedTask& task, const DirectionsSpec& spec) {
       percent(task.relief->coverage), task.seconds);
 }
 
+std::string ratio_words(const Rig& rig, const PlannedTask& planned) {
+  for (const Task& task : rig.tasks) {
+    if (task.name != planned.name) continue;
+    const LightRole role = task.kind == TaskKind::aim ? task.aim.relief.role : task.highlight.relief.role;
+    if (role == LightRole::key) return "key to all other light";
+    if (role != LightRole::any) return fmt::format("key to {}", name_of(role));
+  }
+  return "key to fill";
+}
+
 void print_relief(const Rig& rig, const PlannedTask& task) {
   const PlannedRelief& relief = *task.relief;
   const char* const when = levels_set_before(rig, task.name) ? "before" : "as they hang, at full level";
@@ -151,17 +160,17 @@ void print_relief(const Rig& rig, const PlannedTask& task) {
   const auto was = [&](const std::optional<double>& before, const std::string& text) {
     return before && !dark ? fmt::format(" ({}: {})", when, text) : std::string();
   };
+  std::string contrast;
+  if (std::isfinite(relief.local_contrast_lx))  // else its lights reach nothing of the relief
+    contrast = fmt::format(
+        "local contrast {:.1f} lx{}, relative {:.3f}{}, features with a shadow's edge {}{}, ", relief.local_contrast_lx,
+        was(relief.before_local_contrast_lx, fmt::format("{:.1f}", relief.before_local_contrast_lx.value_or(0))),
+        relief.relative_contrast,
+        was(relief.before_relative_contrast, fmt::format("{:.3f}", relief.before_relative_contrast.value_or(0))),
+        percent(relief.coverage), was(relief.before_coverage, percent(relief.before_coverage.value_or(0))));
   fmt::print(
-      "{} ({}): local contrast {:.1f} lx{}, relative {:.3f}{}, features with a shadow's edge {}{}, brightest place "
-      "{:.0f} lx direct{}, "
-      "{:.1f} s\n",
-      task.name, task.kind, relief.local_contrast_lx,
-      was(relief.before_local_contrast_lx, fmt::format("{:.1f}", relief.before_local_contrast_lx.value_or(0))),
-      relief.relative_contrast,
-      was(relief.before_relative_contrast, fmt::format("{:.3f}", relief.before_relative_contrast.value_or(0))),
-      percent(relief.coverage), was(relief.before_coverage, percent(relief.before_coverage.value_or(0))),
-      relief.object_lux, relief.key_to_fill ? fmt::format(", key to fill {:.2f}", *relief.key_to_fill) : "",
-      task.seconds);
+      "{} ({}): {}brightest place {:.0f} lx direct{}, {:.1f} s\n", task.name, task.kind, contrast, relief.object_lux,
+      relief.key_to_fill ? fmt::format(", {} {:.2f}", ratio_words(rig, task), *relief.key_to_fill) : "", task.seconds);
   if (relief.seen)
     fmt::print("{}: seen {:.3f}{}, lit {} of what is seen, burnt or black {}\n", task.name, *relief.seen,
                was(relief.before_seen, fmt::format("{:.3f}", relief.before_seen.value_or(0))),
@@ -169,6 +178,29 @@ void print_relief(const Rig& rig, const PlannedTask& task) {
   if (dark)
     fmt::print("{}: no comparison with before, since the task before it leaves these heads dark or off the object\n",
                task.name);
+}
+
+const ReliefReasons* reasons_of(const SolvedTasks& solved, const PlannedTask& task) {
+  for (const ReliefReasons& reasons : solved.reasons)
+    if (reasons.task == task.name) return &reasons;
+  return nullptr;
+}
+
+void print_reasons(const ReliefReasons& reasons, bool explain) {
+  if (!explain) {
+    if (const std::string dark = dark_in_words(reasons); !dark.empty()) fmt::print("{}: {}\n", reasons.task, dark);
+    return;
+  }
+  fmt::print("\n{}: {}\n", reasons.task, in_two_sentences(reasons));
+  Table services(reasons.seen
+                     ? std::vector<std::string>{"light", ">fine relief", ">broad form", ">lit surface", ">outline"}
+                     : std::vector<std::string>{"light", ">local contrast", ">features"});
+  for (const LightService& light : reasons.lights)
+    services.row(reasons.seen
+                     ? std::vector<std::string>{light.light, percent(light.fine), percent(light.form),
+                                                percent(light.lit), percent(light.edge)}
+                     : std::vector<std::string>{light.light, percent(light.contrast), percent(light.coverage)});
+  fmt::print("shares that go with a light when it alone is dark:\n{}\n", services.text());
 }
 
 int run_solve(const SolveArguments& arguments) {
@@ -195,7 +227,8 @@ int run_solve(const SolveArguments& arguments) {
   add_opening_light(*solved, session->rig);
   if (const std::string warning = used.warning(); !warning.empty())
     fmt::print(stderr, "luxrig: warning: {}\n", warning);
-  const std::string plan_json = with_transport(to_json(*plan), used);
+  std::string plan_json = with_transport(to_json(*plan), used);
+  if (arguments.explain) plan_json = with_reasons(plan_json, solved->reasons);
   if (arguments.output) {
     if (const auto written = write_file(*arguments.output, plan_json); !written) return report(written.error());
   }
@@ -245,6 +278,7 @@ int run_solve(const SolveArguments& arguments) {
   for (const PlannedTask& task : plan->tasks) {
     if (task.relief) {
       if (task.directions.empty()) print_relief(session->rig, task);
+      if (const ReliefReasons* reasons = reasons_of(*solved, task)) print_reasons(*reasons, arguments.explain);
       continue;
     }
     fmt::print("{} ({}): normalised error {:.2f} %{}, {} iterations, {:.1f} ms\n", task.name, task.kind,
@@ -269,6 +303,9 @@ Action declare_solve(CLI::App& command) {
   add_rig_option(command, solve->rig);
   command.add_option("-o,--output", solve->output, "write the plan here")->check(offers_files());
   add_model(command, solve->compute);
+  command.add_flag("--explain", solve->explain,
+                   "why an object is lit so, in two sentences, and what each of its lights serves (with --json and "
+                   "in the plan, as \"explained\" of the task)");
   command.add_flag("--json", solve->json, "print the plan");
   return [solve] { return run_solve(*solve); };
 }

@@ -42,6 +42,12 @@ std::string complaint_of_seen(const AimWishes& wishes) {
     return lux.empty() || (seen && lux.size() == seen->samples().size() &&
                            std::ranges::all_of(lux, [](float one) { return one >= 0 && std::isfinite(one); }));
   };
+  const auto is_for = [](const SeenRole& role, const std::shared_ptr<const SeenContrast>& seen) {
+    return !role.asks() || (seen && role.wanted.size() == seen->samples().size() &&
+                            (role.spared.empty() || role.spared.size() == role.wanted.size()));
+  };
+  if (!is_for(wishes.role, wishes.seen) || !is_for(wishes.quick_role, wishes.seen_quick))
+    return "a role needs one weight per sample of what is seen";
   if (!fits(wishes.seen_fixed_lux, wishes.seen) || !fits(wishes.seen_quick_fixed_lux, wishes.seen_quick))
     return "fixed light on what is seen must be 0 lx or more, one per sample";
   return "";
@@ -131,6 +137,8 @@ void keep_limits(const HeadAims::State& state, std::vector<HeadSetting>& setting
   for (std::size_t i = 0; i < sum.sample_lux.size(); ++i)
     keep(wishes.max_object_lx, sum.sample_lux[i], fixed.sample_lux[i]);
   keep(wishes.max_watts, sum.watts, 0);
+  if (wishes.role.asks() && wishes.role.wanted_lx > 0)
+    keep(wishes.role.wanted_lx, state.full.objective->own_wanted_lx(sum), 0);
   for (HeadSetting& setting : settings) setting.level *= share;
   if (!wishes.key) return;
   const double key_lx = share * sum.key_mean_lux,
@@ -159,6 +167,8 @@ void brighten(const HeadAims::State& state, std::vector<HeadSetting>& settings) 
   for (std::size_t i = 0; i < sum.sample_lux.size(); ++i)
     keep(wishes.max_object_lx, sum.sample_lux[i], fixed.sample_lux[i]);
   keep(wishes.max_watts, sum.watts, 0);
+  if (wishes.role.asks() && wishes.role.wanted_lx > 0)
+    keep(wishes.role.wanted_lx, state.full.objective->own_wanted_lx(sum), 0);
   if (!std::isfinite(factor) || factor <= 1) return;
   for (std::size_t k = 0; k < settings.size(); ++k)
     settings[k].level = std::min(factor * settings[k].level, state.heads[k].max_level);
@@ -182,6 +192,37 @@ std::vector<std::vector<double>> cones_of(const std::vector<HangingHead>& heads,
     }
   }
   return cones;
+}
+
+/// AimResult::gain_if_lit of a dark head.
+double gain_if_lit(const HeadAims::State& state, std::span<const HeadSetting> settings, std::size_t k,
+                   std::span<const Vec3> aims) {
+  const AimSum others = state.sum(state.full, settings);
+  const AimObjective& objective = *state.full.objective;
+  const HangingHead& head = state.heads[k];
+  const double was = objective.objective(others);
+  std::vector<double> gains(aims.size(), -std::numeric_limits<double>::infinity());
+  parallel_for(aims.size(), state.options.threads, [&](std::size_t a) {
+    HeadSetting setting{head.present, 0, 0};
+    if (head.moves) {
+      const auto joints = pan_tilt_towards(head.world_from_mount, aims[a], head.range, head.present);
+      if (!joints) return;
+      setting.joints = *joints;
+      setting.joints.beam_rad = head.zoom[0].beam_rad;
+    }
+    if (!may_light(head, setting.joints)) return;
+    const AimColumn column = state.full.column(head, k, setting);
+    const HeadRole role = role_in(state.full.wishes, k);
+    const double most = objective.highest_level(others, column, role, head.max_level, head.watts);
+    for (const double share : {1.0, 0.5, 0.2, 0.05}) {
+      if (!(share * most > 0)) continue;
+      AimSum sum = others;
+      objective.add(sum, column, share * most, role, head.watts, travel_s(head, head.present, setting.joints));
+      gains[a] = std::max(gains[a], objective.objective(sum) - was);
+    }
+  });
+  const auto most = std::max_element(gains.begin(), gains.end());
+  return most != gains.end() && std::isfinite(*most) ? *most : std::numeric_limits<double>::quiet_NaN();
 }
 
 std::vector<HeadSight> seen_sights_of(const HeadAims::State& state, const RayScene& room, const SeenContrast& seen) {
@@ -274,6 +315,7 @@ Result<HeadAims> HeadAims::make(const ContrastSamples& samples, const FeatureClu
     if (full.wishes.seen_quick) {
       judge.wishes.seen = full.wishes.seen_quick;
       judge.wishes.seen_fixed_lux = full.wishes.seen_quick_fixed_lux;
+      judge.wishes.role = full.wishes.quick_role;
       judge.seen_sights = seen_sights_of(*state, room, *judge.wishes.seen);
     }
     judge.objective = std::make_unique<AimObjective>(judge.samples, judge.features, judge.wishes, state->reference_lx,
@@ -316,6 +358,14 @@ Result<AimResult> HeadAims::solve() const {
     result.heads.push_back(head);
   }
   result.score = score(found.settings);
+  // Every head's share in it.
+  for (std::size_t k = 0; k < count; ++k) {
+    std::vector<HeadSetting> others = found.settings;
+    others[k].level = 0;
+    result.gain_if_lit.push_back(found.settings[k].level > 0 ? std::numeric_limits<double>::quiet_NaN()
+                                                             : gain_if_lit(state, found.settings, k, first_aims[k]));
+    result.without.push_back(found.settings[k].level > 0 ? score(others) : result.score);
+  }
   return result;
 }
 

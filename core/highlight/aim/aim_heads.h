@@ -36,6 +36,10 @@ struct AimResult {
   std::vector<AimedHead> heads;  ///< one per head
   AimScore score;                ///< by all samples; within limits
   std::size_t tried = 0;         ///< settings of one head that were tried
+  std::vector<AimScore> without;  ///< per head: the score with that head dark and the others as they are
+  /// Per head: of a dark one, the most that the objective would change by if it were lit, over its first aims and some
+  /// levels within the limits; NaN if the limits leave it none, and of a lit one.
+  std::vector<double> gain_if_lit;
 };
 
 class HeadAims {

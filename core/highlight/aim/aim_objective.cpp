@@ -33,6 +33,8 @@ AimObjective::AimObjective(const ContrastSamples& samples, const FeatureClusters
   LUXRIG_CHECK(features.cluster_of_point.size() == samples.interest, "{} features' points, {} interest points",
                features.cluster_of_point.size(), samples.interest);
   LUXRIG_CHECK(reference_lx > 0, "reference of {} lx", reference_lx);
+  LUXRIG_CHECK(!wishes.role.asks() || (wishes.seen && wishes.role.wanted.size() == wishes.seen->samples().size()),
+               "a role of {} samples", wishes.role.wanted.size());
   LUXRIG_CHECK((wishes.measure == AimMeasure::seen) == (wishes.seen != nullptr), "{} what is seen",
                wishes.seen ? "unused" : "no");
 }
@@ -98,7 +100,13 @@ double AimObjective::highest_level(const AimSum& others, const AimColumn& column
     keep(wishes_.max_key_to_fill * fill_lux - others.key_mean_lux, column.mean_lux);
   if (ratios && role == HeadRole::fill)
     keep(others.key_mean_lux - wishes_.min_key_to_fill * fill_lux, wishes_.min_key_to_fill * column.mean_lux);
+  if (ratios && wishes_.role.asks() && wishes_.role.wanted_lx > 0)
+    keep(wishes_.role.wanted_lx - own_wanted_lx(others), mean_lx_of(wishes_.role.wanted, column.seen_lux));
   return most;
+}
+
+double AimObjective::own_wanted_lx(const AimSum& sum) const {
+  return mean_lx_of(wishes_.role.wanted, sum.seen_lux) - mean_lx_of(wishes_.role.wanted, wishes_.seen_fixed_lux);
 }
 
 void AimObjective::measure_contrast(const AimSum& sum, AimScore& score) const {
@@ -126,6 +134,9 @@ AimScore AimObjective::scored(const AimSum& sum, bool all) const {
   if (all || !wishes_.seen) measure_contrast(sum, score);
   if (wishes_.seen)
     score.seen = wishes_.seen->score(sum.seen_lux, kDarkestSeen * std::min(reference_lx_, wishes_.max_object_lx));
+  if (wishes_.seen && wishes_.role.asks())
+    score.role = score_role(wishes_.role, sum.seen_lux, wishes_.seen_fixed_lux,
+                            kDarkestSeen * std::min(reference_lx_, wishes_.max_object_lx), score.seen->objective);
   score.coverage = static_cast<double>(std::count(sum.covered.begin(), sum.covered.end(), 1)) /
                    static_cast<double>(std::max<std::size_t>(1, sum.covered.size()));
   score.mean_lx = sum.mean_lux;
@@ -142,7 +153,8 @@ AimScore AimObjective::scored(const AimSum& sum, bool all) const {
     score.within_limits &= sum.limit_lux[i] <= wishes_.limits[i].max_lx * (1 + kLimitSlack);
   score.objective = -wishes_.base_weight * score.below_base - wishes_.travel_weight * sum.travel_total_s / kUsualMove_s;
   if (score.seen)
-    score.objective += score.seen->objective - (wishes_.limited() ? kLevelCost * sum.levels : 0);
+    score.objective += (score.role ? score.role->objective : score.seen->objective) -
+                       (wishes_.limited() ? kLevelCost * sum.levels : 0);
   else
     score.objective +=
         (wishes_.measure == AimMeasure::relative ? score.relative_contrast : score.local_contrast_lx / reference_lx_) +

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/highlight/seen/seen_contrast.h"
+#include "core/highlight/seen/seen_role.h"
 #include "core/highlight/shadow/contrast_samples.h"
 #include "core/highlight/surface/feature_clusters.h"
 
@@ -46,9 +47,11 @@ struct AimWishes {
   /// Fixed light (daylight, lights that stay on) at each sample [lx]; empty = darkness.
   std::vector<double> fixed_lux;
   std::vector<float> seen_fixed_lux, seen_quick_fixed_lux;  ///< the same at the samples of `seen` and `seen_quick`
+  SeenRole role, quick_role;                                ///< of all heads together, at the same samples
 
   [[nodiscard]] bool limited() const {
-    return !limits.empty() || std::isfinite(max_object_lx) || std::isfinite(max_watts) || key.has_value();
+    return !limits.empty() || std::isfinite(max_object_lx) || std::isfinite(max_watts) || key.has_value() ||
+           role.wanted_lx > 0;
   }
 };
 
@@ -74,6 +77,7 @@ struct AimScore {
   std::vector<double> limit_lx;                                   ///< at each of AimWishes::limits
   bool within_limits = true;
   std::optional<SeenScore> seen;  ///< if the measure is `seen`
+  std::optional<RoleScore> role;  ///< if a role is asked for
   double objective = 0;  ///< the measure (contrast in lux over reference_lx) + weighted terms; the search maximises it
 };
 
@@ -110,12 +114,15 @@ class AimObjective {
 
   /// Largest level at which the added light breaks no limit; 0 if one is already broken.
   /// watts    of the head at full level
-  /// ratios   also keep the ratio of key to fill
+  /// ratios   also keep the ratio of key to fill, and the role's lux
   [[nodiscard]] double highest_level(const AimSum& others, const AimColumn& column, HeadRole role, double max_level,
                                      double watts, bool ratios = true) const;
   [[nodiscard]] AimScore score(const AimSum& sum) const { return scored(sum, true); }
   /// AimScore::objective, without measures that do not count in it.
   [[nodiscard]] double objective(const AimSum& sum) const { return scored(sum, false).objective; }
+
+  /// Mean over what the role wants lit, by the heads' own light.
+  [[nodiscard]] double own_wanted_lx(const AimSum& sum) const;
 
  private:
   [[nodiscard]] AimScore scored(const AimSum& sum, bool all) const;

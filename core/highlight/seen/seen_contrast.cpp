@@ -98,6 +98,16 @@ SeenContrast::SeenContrast(std::vector<SeenView> views, const SeenWishes& wishes
   }
 }
 
+std::vector<std::uint32_t> SeenContrast::outline() const {
+  std::vector<std::uint32_t> along;
+  for (const View& view : views_)
+    for (const auto& [inside, outside] : view.outline)
+      if (const auto sample = static_cast<std::uint32_t>(view.first_sample) + inside;
+          along.empty() || along.back() != sample)
+        along.push_back(sample);
+  return along;
+}
+
 void SeenContrast::add_levels(View& view) const {
   const SeenView& seen = view.seen;
   int width = seen.width_px, height = seen.height_px;

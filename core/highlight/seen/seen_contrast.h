@@ -54,6 +54,9 @@ class SeenContrast {
   /// All views' samples, in order.
   [[nodiscard]] std::span<const OrientedPoint> samples() const { return samples_; }
   [[nodiscard]] const SeenWishes& wishes() const { return wishes_; }
+  [[nodiscard]] bool of_object(std::size_t sample) const { return of_object_[sample] != 0; }
+  /// Samples of the object along its outline, each once.
+  [[nodiscard]] std::vector<std::uint32_t> outline() const;
 
   /// lux         at each sample, of all light, direct and reflected; finite and ≥ 0
   /// darkest_lx  an eye or a camera does not adapt to a darker object (mean illuminance)

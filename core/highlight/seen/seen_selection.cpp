@@ -27,6 +27,7 @@ SeenSelection::SeenSelection(const SeenContrast& seen, const RayScene& room, std
       fixed_lux_(std::move(fixed_lux)),
       options_(options) {
   fixed_lux_.resize(seen.samples().size(), 0);
+  fixed_wanted_lx_ = mean_lx_of(options.role.wanted, fixed_lux_);
   parallel_for(candidates_.size(), options.threads, [&](std::size_t c) {
     const SeenCandidate& light = candidates_[c];
     const HeadSight sight = sight_of(room, light.position_world_m, seen.samples(), 1);
@@ -36,6 +37,13 @@ SeenSelection::SeenSelection(const SeenContrast& seen, const RayScene& room, std
   });
   for (const std::vector<float>& lux : lux_)
     darkest_lx_ = std::max(darkest_lx_, kDarkestShare * seen.score(lux).mean_lx);
+}
+
+SeenScore SeenSelection::scored(std::span<const float> lux) const {
+  SeenScore score = seen_.score(lux, darkest_lx_);
+  if (options_.role.asks())
+    score.objective = score_role(options_.role, lux, fixed_lux_, darkest_lx_, score.objective).objective;
+  return score;
 }
 
 std::vector<float> SeenSelection::light_of(const SeenChoice& choice, std::size_t without) const {
@@ -52,7 +60,7 @@ std::vector<float> SeenSelection::light_of(const SeenChoice& choice, std::size_t
 SeenScore SeenSelection::score(std::span<const std::size_t> candidates, std::span<const double> levels) const {
   LUXRIG_CHECK(candidates.size() == levels.size(), "{} levels of {} lights", levels.size(), candidates.size());
   const SeenChoice choice{{candidates.begin(), candidates.end()}, {levels.begin(), levels.end()}, {}};
-  return seen_.score(light_of(choice, kNone), darkest_lx_);
+  return scored(light_of(choice, kNone));
 }
 
 SeenSelection::Taken SeenSelection::best_beside(const SeenChoice& choice, std::size_t without) const {
@@ -62,14 +70,22 @@ SeenSelection::Taken SeenSelection::best_beside(const SeenChoice& choice, std::s
     best[c] = {c, 0, -std::numeric_limits<double>::infinity()};
     for (std::size_t l = 0; l < choice.candidates.size(); ++l)
       if (l != without &&
-          (candidates_[choice.candidates[l]].position_world_m - candidates_[c].position_world_m).norm() <
-              options_.min_apart_m)
+          ((candidates_[choice.candidates[l]].position_world_m - candidates_[c].position_world_m).norm() <
+               options_.min_apart_m ||
+           (candidates_[c].side != 0 && candidates_[choice.candidates[l]].side == candidates_[c].side)))
         return;
     std::vector<float> lux(others.size());
-    for (const double level : kTriedLevels) {
-      const auto share = static_cast<float>(level);
-      for (std::size_t i = 0; i < lux.size(); ++i) lux[i] = others[i] + share * lux_[c][i];
-      const double objective = seen_.score(lux, darkest_lx_).objective;
+    double most = 1;
+    if (options_.role.asks() && options_.role.wanted_lx > 0) {
+      const double full_lx = mean_lx_of(options_.role.wanted, lux_[c]);
+      const double left_lx = options_.role.wanted_lx - (mean_lx_of(options_.role.wanted, others) - fixed_wanted_lx_);
+      if (full_lx > 0) most = std::clamp(left_lx / full_lx, 0.0, 1.0);
+    }
+    for (const double share : kTriedLevels) {
+      const double level = share * most;
+      const auto factor = static_cast<float>(level);
+      for (std::size_t i = 0; i < lux.size(); ++i) lux[i] = others[i] + factor * lux_[c][i];
+      const double objective = scored(lux).objective;
       if (objective > best[c].objective) best[c] = {c, level, objective};
     }
   });

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/highlight/seen/seen_contrast.h"
+#include "core/highlight/seen/seen_role.h"
 #include "core/photometry/intensity.h"
 
 namespace luxrig {
@@ -13,17 +14,19 @@ namespace luxrig {
 struct SeenCandidate {
   Vec3 position_world_m = Vec3::Zero();
   Vec3 direction = -Vec3::UnitZ();  ///< unit, of its beam; turned as by aimed_beam
+  int side = 0;                     ///< of each side but 0 at most one is chosen
 };
 
 struct SeenSelectionOptions : Run {
   double reflected_lx = 0;    ///< by way of the room, everywhere on the object, by each light at full level
   double min_apart_m = 1e-6;  ///< of two lights that are both chosen
+  SeenRole role{};            ///< of the new lights together
 };
 
 struct SeenChoice {
   std::vector<std::size_t> candidates;  ///< may be fewer than asked for
   std::vector<double> levels;           ///< 0…1, one each
-  SeenScore score;
+  SeenScore score;                      ///< with a role, its objective is the role's
 };
 
 class SeenSelection {
@@ -47,6 +50,7 @@ class SeenSelection {
     std::size_t candidate = 0;
     double level = 0, objective = 0;
   };
+  [[nodiscard]] SeenScore scored(std::span<const float> lux) const;
   [[nodiscard]] std::vector<float> light_of(const SeenChoice& choice, std::size_t without) const;
   /// The best light beside all chosen ones but one.
   [[nodiscard]] Taken best_beside(const SeenChoice& choice, std::size_t without) const;
@@ -58,6 +62,7 @@ class SeenSelection {
   std::vector<float> fixed_lux_;
   /// A quarter of the mean of the best candidate's light: an object that all beams miss is seen badly.
   double darkest_lx_ = 0;
+  double fixed_wanted_lx_ = 0;  ///< mean over what the role wants lit
   SeenSelectionOptions options_;
 };
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kNearestEye_m = 1e-3;
 /// Share of the picture's longer side that the object takes: its edge needs a border.
-constexpr double kFill = 0.92;
+constexpr double kFill = 0.92, kFillAmongSurroundings = 0.5;
 /// A very near eye sees the object at most so wide (half angle).
 const double kWidestSlope = std::tan(rad_from_deg(70));
 /// The room's surface and the object's own are the same within this many errors of both (ray_scene.h).
@@ -21,7 +21,8 @@ constexpr double kSameSurface = 8;
 constexpr double kVisitorTurn_rad = rad_from_deg(40);
 
 /// Looks at the object's middle from the eye and shows all of its triangles.
-Camera camera_on(const RayScene& object, const Vec3& eye_world_m, int across_px) {
+Camera camera_on(const RayScene& object, const Vec3& eye_world_m, const SeenViewOptions& options) {
+  const double fill = options.surroundings ? kFillAmongSurroundings : kFill;
   Camera camera;
   camera.eye_world_m = eye_world_m;
   camera.target_world_m = object.bounds_world_m().center();
@@ -40,9 +41,9 @@ Camera camera_on(const RayScene& object, const Vec3& eye_world_m, int across_px)
       slope_y = std::max(slope_y, std::abs(to_m.dot(y)) / depth_m);
     }
   const double least = 1e-9 + 0.02 * std::max(slope_x, slope_y);
-  slope_x = std::clamp(slope_x / kFill, least, kWidestSlope);
-  slope_y = std::clamp(slope_y / kFill, least, kWidestSlope);
-  const double px_per_slope = across_px / (2 * std::max(slope_x, slope_y));
+  slope_x = std::clamp(slope_x / fill, least, kWidestSlope);
+  slope_y = std::clamp(slope_y / fill, least, kWidestSlope);
+  const double px_per_slope = options.across_px / (2 * std::max(slope_x, slope_y));
   camera.width_px = std::max(8, static_cast<int>(std::ceil(2 * slope_x * px_per_slope)));
   camera.height_px = std::max(8, static_cast<int>(std::ceil(2 * slope_y * px_per_slope)));
   camera.vertical_fov_rad = 2 * std::atan(camera.height_px / (2 * px_per_slope));
@@ -85,7 +86,7 @@ Result<SeenView> see_object(const RayScene& room, const RayScene& object, const 
   if (object.triangles() == 0) return refusal("the object has no triangles: there is no surface to see");
   if ((object.bounds_world_m().center() - eye_world_m).norm() < kNearestEye_m)
     return refusal("the eye is in the middle of the object that it should see");
-  const Camera camera = camera_on(object, eye_world_m, options.across_px);
+  const Camera camera = camera_on(object, eye_world_m, options);
   SeenView view;
   view.width_px = camera.width_px;
   view.height_px = camera.height_px;
@@ -107,7 +108,9 @@ Result<SeenView> see_object(const RayScene& room, const RayScene& object, const 
   for (int y = 0; y < view.height_px; ++y)
     for (int x = 0; x < view.width_px; ++x) {
       const auto p = static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x);
-      if (hits[p].hit && !hits[p].of_object && borders_on_object(hits, view.width_px, view.height_px, x, y)) take(p);
+      if (hits[p].hit && !hits[p].of_object &&
+          (options.surroundings || borders_on_object(hits, view.width_px, view.height_px, x, y)))
+        take(p);
     }
   return view;
 }

@@ -53,22 +53,68 @@ void RigReader::read_relief(Section& s, ReliefSpec& relief) {
     problems.add(s.place_of("max_object_lx"), "max_object_lx of 0 leaves nothing to light", "give it some lux");
   s.read("coverage_weight", relief.coverage_weight);
   s.read_choice("objective", relief.seen);
+  read_role(s, relief);
+}
+
+void RigReader::read_role(Section& s, ReliefSpec& relief) {
+  s.read_choice("role", relief.role);
+  s.read("ratio", relief.ratio);
+  if (relief.role == LightRole::any)
+    s.refuse("ratio", "ratio has no effect without a role that has one",
+             "add role = \"key\", \"fill\", \"rim\" or \"background\"");
+  s.read_choice("set_up", relief.set_up);
+  const bool needs_camera = relief.role == LightRole::rim || relief.role == LightRole::background;
+  if (needs_camera && !s.has("seen_by"))
+    s.refuse("role", fmt::format("role \"{}\" has no meaning without a camera", name_of(relief.role)),
+             "add seen_by = \"…\"");
+  if (relief.set_up != SetUp::none && !s.has("seen_by"))
+    s.refuse("set_up", "set_up has no meaning without a camera", "add seen_by = \"…\"");
+  if (relief.set_up != SetUp::none && relief.role != LightRole::any && relief.role != LightRole::key)
+    s.refuse("set_up", fmt::format("set_up is the key light's, and the role is \"{}\"", name_of(relief.role)),
+             "remove it, or role");
 }
 
 void RigReader::read_highlight(Section& s, HighlightSpec& highlight) {
   read_placed(s, TaskKind::highlight, highlight.luminaire, highlight.lights, highlight.max_lights);
   read_relief(s, highlight.relief);
+  refuse_roles_unseen(s, highlight.relief);
+  refuse_other_numbers(s, highlight.relief, highlight.lights);
+}
+
+void RigReader::refuse_roles_unseen(Section& s, const ReliefSpec& relief) {
+  if (relief.seen) return;
+  for (const char* key : {"role", "set_up"})
+    s.refuse(key, fmt::format("{} has no effect with objective = \"thesis\"", key), "add objective = \"seen\"");
+}
+
+void RigReader::refuse_other_numbers(Section& s, const ReliefSpec& relief, const std::optional<int>& lights) {
+  if (relief.set_up == SetUp::none) return;
+  const int of_set_up = relief.set_up == SetUp::copy ? 2 : 1;
+  if (lights && *lights != of_set_up)
+    s.refuse(
+        "lights",
+        fmt::format("set_up \"{}\" is of {} light{}", name_of(relief.set_up), of_set_up, of_set_up == 1 ? "" : "s"),
+        fmt::format("write lights = {}, or remove it", of_set_up));
+  s.refuse(
+      "max_lights",
+      fmt::format("max_lights has no effect with set_up: it is of {} light{}", of_set_up, of_set_up == 1 ? "" : "s"),
+      "remove it");
 }
 
 void RigReader::read_directions(Section& s, DirectionsSpec& directions) {
   read_number_of_lights(s, directions.lights, directions.max_lights);
   read_relief(s, directions.relief);
+  refuse_other_numbers(s, directions.relief, directions.lights);
   s.read("distance_m", directions.distance_m);
 }
 
 void RigReader::read_aim_task(Section& s, AimSpec& aim) {
   read_relief(s, aim.relief);
   s.read_choice("contrast", aim.relief.relative);
+  refuse_roles_unseen(s, aim.relief);
+  if (aim.relief.role != LightRole::any || aim.relief.set_up != SetUp::none)
+    s.refuse("key", "key has no effect with role or set_up: they say what this task's lights are",
+             "remove it, and write a task for each role");
   if (aim.relief.seen)
     s.refuse("contrast", "contrast has no effect with objective = \"seen\"", "remove it, or objective");
   std::vector<std::string_view> fixture_names, point_names;

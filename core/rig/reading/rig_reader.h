@@ -96,6 +96,10 @@ struct RigReader {
   void read_placed(Section& section, TaskKind kind, std::size_t& luminaire, std::optional<int>& lights,
                    int& max_lights);
   void read_relief(Section& section, ReliefSpec& relief);
+  void read_role(Section& section, ReliefSpec& relief);
+  void refuse_roles_unseen(Section& section, const ReliefSpec& relief);
+  /// A set-up has its own number of lights.
+  void refuse_other_numbers(Section& section, const ReliefSpec& relief, const std::optional<int>& lights);
   void read_aim_task(Section& section, AimSpec& aim);
   void read_highlight(Section& section, HighlightSpec& highlight);
   void read_directions(Section& section, DirectionsSpec& directions);

@@ -171,6 +171,31 @@ constexpr KeySpec kTaskKeys[] = {
      "what is made large (kind `aim` and `highlight`): contrast at its recessed places and their coverage (`thesis`); "
      "or what an eye or a camera at one exposure gets of its form, relief and outline, without burnt and black parts "
      "(`seen`), from the camera of `seen_by` or from three sides"},
+    {"task", "role", text, "", R"("any")", kAny, "any, key, fill, rim, background", R"("key")",
+     "what this task's lights are to the object, beside the light of the tasks before (kind `aim` and `highlight`, "
+     "with "
+     "objective `seen`). `key`: what shows its form. `fill`: lifts what the light before leaves dark. `rim`: from "
+     "behind, along its outline as `seen_by` sees it. `background`: what is behind it, not the object. A light that is "
+     "left out of `heads` keeps its level and counts as light that is there: so a person sets some by hand, and the "
+     "rest is solved"},
+    {"task",
+     "ratio",
+     number,
+     "",
+     kNone,
+     {0, 1e4, true},
+     "",
+     "4",
+     "key to this role's mean illuminance; of the key, its own to all other light; needs `role`. The key is the light "
+     "that is there, where it lights the object at least as its mean. Left out: any (`key`), 3 (`fill`, with the light "
+     "that is already in the dark parts), 1 (`rim`), 2 (`background`)"},
+    {"task", "set_up", text, "", R"("none")", kAny, "none, rembrandt, loop, split, broad, raking, copy", R"("loop")",
+     "where the key light stands, as photographers say (kind `aim`, `highlight` and `directions`; needs `seen_by` and, "
+     "unless kind is `directions`, objective `seen`). Degrees aside of the camera, around the vertical, and above the "
+     "level, from the object's middle: `rembrandt` 30 to 60 and 30 to 60; `loop` 30 to 45 and 10 to 35; `split` 80 to "
+     "100 and -15 to 30; `broad` 30 to 60 and 10 to 50, on the side that lights more of what is seen. `raking`: 5 to "
+     "15 off the surface. `copy`: two lights, 40 to 50 from straight before the surface on either side, even. One "
+     "light (`copy`: two); refused if none can be there"},
     {"task", "contrast", text, "", R"("relative")", kAny, "lux, relative", R"("lux")",
      "which contrast objective `thesis` makes large (only with kind `aim`): the difference in illuminance to what is "
      "beside it, in `lux`, or `relative` to both, as an eye or a camera sees that adapts; then lights are as bright as "

@@ -114,7 +114,11 @@ max_eye_lx; base_lx; base_weight; energy_weight; travel_weight
 [[task]]
 name = "detail"; kind = "highlight"; luminaire; object; max_lights; objective
 [[task]]
-name = "held"; kind = "directions"; object; distance_m
+name = "held"; kind = "directions"; object; distance_m; seen_by = "front"; set_up
+[[task]]
+name = "lit"; kind = "highlight"; luminaire; object; objective = "seen"; role = "key"; ratio
+[[task]]
+name = "beside"; kind = "aim"; object; objective = "seen"; role #> "fill"
 [[keep_out]]
 name; box_m; heads #> ["zoomer"]; rest
 [[keep_out]]

@@ -47,6 +47,27 @@ TEST(Aim, BringsOutTheFriezeWithinItsLimitsAndEvaluateAgrees) {
   }
 }
 
+TEST(Aim, ExplainsWhatEachLightServes) {
+  const Folder folder;
+  std::vector<std::string> words = {
+      program("luxrig"), "solve", source("rigs/studio"), "-o", (folder / "plan.json").string(), "--model", "direct"};
+  EXPECT_EQ(luxrig::testing::run(words, 120s).output.find("serves"), std::string::npos);
+  EXPECT_FALSE(plan_of(folder / "plan.json")["tasks"][1].contains("explained"));
+  words.emplace_back("--explain");
+  const Ran ran = luxrig::testing::run(words, 120s);
+  ASSERT_EQ(ran.code, 0) << ran.output;
+  const json explained = plan_of(folder / "plan.json")["tasks"][1]["explained"];
+  const auto why = explained["why"].get<std::string>();
+  EXPECT_NE(ran.output.find("relief: " + why), std::string::npos) << ran.output << why;
+  double contrast = 0;
+  for (const json& light : explained["lights"]) {
+    contrast += light["contrast"].get<double>();
+    EXPECT_NE(why.find(light["name"].get<std::string>() + " serves"), std::string::npos) << why;
+  }
+  EXPECT_EQ(explained["lights"].size(), 3u);
+  EXPECT_NEAR(contrast, 1, 1e-9);
+}
+
 TEST(Aim, DoesNotDependOnTheThreads) {
   const Folder folder;
   const json one = solved(source("rigs/studio"), folder / "one.json", "1"),

@@ -112,6 +112,36 @@ TEST(Render, WritesJpegAndReportsItsExposure) {
 
 // The key light is the same lamp, as far away, and the eye sees the ball's brightest place in both: so both have one white.
 // As planned, the lamp is dimmed.
+// The studio's camera looks at the skull in 540 × 420 pixels.
+TEST(Render, DrawsWhatACameraOfTheRigSees) {
+  const Folder folder;
+  const auto render = [&](const std::string& name, std::vector<std::string> more) {
+    std::vector<std::string> command = {
+        program("luxrig"), "render", source("rigs/studio"), "-o", (folder / "a.png").string(), "--camera", name,
+        "--passes",        "1"};
+    command.insert(command.end(), more.begin(), more.end());
+    return luxrig::testing::run(command);
+  };
+  const auto size = [&](int at) {  // PNG: width at byte 16, height at 20
+    const std::string png = text_of(folder / "a.png");
+    int value = 0;
+    for (int k = 0; k < 4; ++k)
+      value = 256 * value + static_cast<unsigned char>(png.at(static_cast<std::size_t>(at + k)));
+    return value;
+  };
+  const Ran own = render("front", {});
+  ASSERT_EQ(own.code, 0) << own.output;
+  const int width = size(16), height = size(20);
+  const Ran asked = render("front", {"--width", "160", "--height", "120"});
+  ASSERT_EQ(asked.code, 0) << asked.output;
+  EXPECT_EQ(width - size(16), 540 - 160);
+  EXPECT_EQ(height - size(20), 420 - 120);
+  const Ran unknown = render("frnt", {});
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_NE(unknown.output.find("did you mean \"front\"?"), std::string::npos) << unknown.output;
+  EXPECT_NE(render("front", {"--fov-deg", "30"}).code, 0);
+}
+
 TEST(Compare, ShowsTheObjectInThreeLightsMeteredOnIt) {
   const Folder folder;
   const std::string rig = rig_with(folder, ball_obj());

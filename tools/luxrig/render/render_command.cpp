@@ -12,10 +12,12 @@
 #include <sstream>
 
 #include "core/photometry/light_colour.h"
+#include "core/picture/rig_camera.h"
 #include "core/plan/plan.h"
 #include "core/rig/rig_file.h"
 #include "core/tasks/rig_transport.h"
 #include "core/tasks/scene_builder.h"
+#include "core/text/nearest.h"
 #include "tools/command_line/choice.h"
 #include "tools/command_line/completion.h"
 #include "tools/command_line/installed.h"
@@ -98,6 +100,23 @@ Checked<HungPlan> load_rig_for_picture(const RenderOptions& options) {
   return look_to_render(options, *rig);
 }
 
+Result<std::optional<Camera>> camera_named(const Rig& rig, const RenderOptions& options) {
+  if (!options.camera) return std::optional<Camera>();
+  std::vector<std::string_view> names;
+  for (const PictureCamera& camera : rig.cameras) {
+    names.push_back(camera.name);
+    if (camera.name != *options.camera) continue;
+    Camera view = view_of(camera);
+    if (options.sized) {
+      view.width_px = options.width_px;
+      view.height_px = options.height_px;
+    }
+    return std::optional(view);
+  }
+  return refusal(fmt::format("the rig has no camera \"{}\": {}", *options.camera,
+                             mend_for_unknown(*options.camera, names, "add a [[camera]] of that name")));
+}
+
 namespace {
 
 int run_render(const RenderOptions& options) {
@@ -118,8 +137,11 @@ int run_render(const RenderOptions& options) {
   std::vector<double> all_levels = loaded->look.levels;
   all_levels.resize(emitters.size(), 1.0);  // daylight
 
-  Camera camera = automatic_camera(rays, rig, loaded->look.joints, options.width_px, options.height_px,
-                                   rad_from_deg(options.vertical_fov_deg.value_or(60)));
+  const auto of_rig = camera_named(rig, options);
+  if (!of_rig) return report(of_rig.error());
+  Camera camera = *of_rig ? **of_rig
+                          : automatic_camera(rays, rig, loaded->look.joints, options.width_px, options.height_px,
+                                             rad_from_deg(options.vertical_fov_deg.value_or(60)));
   if (options.eye_world_m) camera.eye_world_m = *options.eye_world_m;
   if (options.target_world_m) camera.target_world_m = *options.target_world_m;
   const auto picture = picture_in_time(rays, emitters, all_levels, camera, options,
@@ -216,12 +238,21 @@ Action declare_render(CLI::App& command) {
   command.add_option("--lights", render.lights, "with --show histogram: so many directions are chosen")
       ->check(CLI::Range(1, 64))
       ->needs(with_show);
-  command.add_option("--width", render.width_px, "pixels")->check(CLI::Range(16, 8192));
-  command.add_option("--height", render.height_px, "pixels")->check(CLI::Range(16, 8192));
+  auto* with_width = command.add_option("--width", render.width_px, "pixels")->check(CLI::Range(16, 8192));
+  auto* with_height = command.add_option("--height", render.height_px, "pixels")->check(CLI::Range(16, 8192));
   auto* with_eye = command.add_option("--eye", line->eye_m, "x y z [m] of the viewer")->expected(3);
   auto* with_target = command.add_option("--target", line->target_m, "x y z [m] looked at")->expected(3);
-  command.add_option("--fov-deg", render.vertical_fov_deg, "vertical field of view (60; with --show 30)")
-      ->check(CLI::Range(1.0, 170.0));
+  auto* with_fov =
+      command.add_option("--fov-deg", render.vertical_fov_deg, "vertical field of view (60; with --show 30)")
+          ->check(CLI::Range(1.0, 170.0));
+  command
+      .add_option("--camera", render.camera,
+                  "as this [[camera]] of the rig sees it, as large as its picture unless width and height are given")
+      ->excludes(with_show)
+      ->excludes(with_compare)
+      ->excludes(with_eye)
+      ->excludes(with_target)
+      ->excludes(with_fov);
   add_how_it_looks(command, *line, with_false_colour);
   command.add_option("--max-lx", render.max_lx, "top of the false-colour scale")->check(CLI::PositiveNumber);
   command.add_option("--max-error", render.max_error, "noise at which the picture is done")
@@ -233,7 +264,7 @@ Action declare_render(CLI::App& command) {
   command.footer(
       "As a photograph, as a false-colour map of lux, or with --show as a drawing of\n"
       "why its lights are where they are.");
-  return [line, with_plan, with_eye, with_target, with_object, with_show, with_compare] {
+  return [line, with_plan, with_eye, with_target, with_object, with_show, with_compare, with_width, with_height] {
     if (*with_object && !*with_show && !*with_compare) {
       fmt::print(stderr, "luxrig render: --object requires --show or --compare\n");
       return kExitBadInput;
@@ -241,6 +272,7 @@ Action declare_render(CLI::App& command) {
     RenderOptions options = line->options;
     const auto& eye = line->eye_m;
     const auto& target = line->target_m;
+    options.sized = *with_width || *with_height;
     if (*with_plan) options.plan = line->plan;
     if (*with_eye) options.eye_world_m = Vec3(eye[0], eye[1], eye[2]);
     if (*with_target) options.target_world_m = Vec3(target[0], target[1], target[2]);

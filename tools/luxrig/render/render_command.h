@@ -25,6 +25,8 @@ struct RenderOptions {
   std::filesystem::path output;               ///< .png or .jpg
   bool false_colour = false;                  ///< lux map with a scale
   int width_px = 960, height_px = 600;
+  std::optional<std::string> camera;                ///< of the rig, from which it is seen
+  bool sized = false;                               ///< width and height are asked for, not the camera's
   std::optional<Vec3> eye_world_m, target_world_m;  ///< none = a view of the room that shows most of its points
   std::optional<double> vertical_fov_deg;           ///< none = 60, for `show` 30
   std::optional<ShowWhat> show;                     ///< instead of the lit room
@@ -39,6 +41,9 @@ struct RenderOptions {
   std::optional<int> passes;     ///< or after so many samples per pixel: the same picture each time
   int threads = 0;
 };
+
+/// The rig's camera of that name, none if none is asked for. Refuses an unknown name.
+[[nodiscard]] Result<std::optional<Camera>> camera_named(const Rig& rig, const RenderOptions& options);
 
 /// For `options.show`, which must be set. Returns the exit code: 0, 2 for bad input (with a message on stderr), 1 if
 /// the file cannot be written.
