@@ -19,6 +19,7 @@ luxrig::HttpHandlers checking_handlers() {
   luxrig::HttpHandlers handlers;
   handlers.status = handlers.universes = handlers.room_json = [] { return std::string("{}"); };
   handlers.room_png = [] { return std::string(); };
+  handlers.scene = [](const luxrig::HttpRequest&) { return luxrig::HttpResponse{}; };
   handlers.blackout = [](bool) { return luxrig::Result<void>(); };
   handlers.identify = [](const std::string&, double seconds) {
     LUXRIG_CHECK(seconds > 0 && seconds <= 60, "identify for {} s", seconds);

@@ -23,7 +23,7 @@ export function unreadableTexts(page) {
     while (walker.nextNode()) {
       const element = walker.currentNode.parentElement;
       // Text over the picture has a halo of the background's colour instead.
-      if (!walker.currentNode.data.trim() || !element.checkVisibility({ checkVisibilityCSS: true }) || element.closest('svg.plan')) continue;
+      if (!walker.currentNode.data.trim() || !element.checkVisibility({ checkVisibilityCSS: true }) || element.closest('svg.plan, .room-labels')) continue;
       const [text, ground] = [parse(getComputedStyle(element).color), groundOf(element)];
       const [light, dark] = [luminance(text), luminance(ground)].sort((a, b) => b - a);
       const contrast = (light + 0.05) / (dark + 0.05);

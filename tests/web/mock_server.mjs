@@ -6,6 +6,7 @@ import { createServer } from 'node:http';
 import path from 'node:path';
 import { fileURLToPath, pathToFileURL } from 'node:url';
 import { FIXTURES, METERED, POINTS, room, roomPng } from './mock_rig.mjs';
+import { etagOf, sceneGlb } from './mock_scene.mjs';
 
 const TYPES = { '.html': 'text/html; charset=utf-8', '.js': 'text/javascript', '.css': 'text/css', '.svg': 'image/svg+xml' };
 const wobble = (seed, t) => Math.sin(seed * 12.9898 + t * 1.7) * 0.6 + Math.sin(seed * 78.233 + t * 0.31) * 0.4;
@@ -38,6 +39,8 @@ export class MockDaemon {
   unknown = false; // the browser has no access, and gets no events
   refuse = false; // posts are answered with 503
   scripted = false;
+  scene = sceneGlb(); // GET /api/scene; undefined: the rig has none
+  sceneAnswers = []; // codes of the answers to it
   #streams = new Set();
   #picture = roomPng();
   #started = Date.now();
@@ -178,6 +181,15 @@ export class MockDaemon {
     return json(200, { held: true, text: `${name} by hand` });
   }
 
+  #sceneAnswer(request, response, json) {
+    const etag = this.scene && etagOf(this.scene);
+    const code = !this.scene ? 404 : request.headers['if-none-match'] === etag ? 304 : 200;
+    this.sceneAnswers.push(code);
+    if (code === 404) return json(404, { error: 'this rig has no scene' });
+    response.writeHead(code, { 'Content-Type': 'model/gltf-binary', ETag: etag, 'Cache-Control': 'private, no-cache' });
+    return response.end(code === 200 ? this.scene : undefined);
+  }
+
   async #answer(request, response) {
     const url = new URL(request.url, 'http://mock');
     const json = (code, value) => response.writeHead(code, { 'Content-Type': 'application/json' }).end(JSON.stringify(value));
@@ -204,6 +216,8 @@ export class MockDaemon {
         return json(200, room(this.name));
       case '/api/room.png':
         return response.writeHead(200, { 'Content-Type': 'image/png' }).end(this.#picture);
+      case '/api/scene':
+        return this.#sceneAnswer(request, response, json);
       case '/api/events':
         if (this.unknown) return json(401, { error: 'who asks?' });
         response.writeHead(200, { 'Content-Type': 'text/event-stream', 'Cache-Control': 'no-store' });

@@ -10,6 +10,7 @@
 #include "core/tasks/rig_version.h"
 #include "drivers/registry.h"
 #include "tools/command_line/installed.h"
+#include "tools/luxrigd/api/scene_file.h"
 #include "tools/luxrigd/api/status_json.h"
 #include "tools/luxrigd/scheduling.h"
 #include "tools/process/clock.h"
@@ -331,6 +332,10 @@ HttpHandlers Daemon::handlers() {
     const std::lock_guard lock(mutex_);
     return room_.png;
   };
+  handlers.scene = [file = std::make_shared<SceneFile>([this] {
+                      const std::lock_guard lock(mutex_);
+                      return session_;
+                    })](const HttpRequest& request) { return file->answer(request); };
   handlers.blackout = [this](bool on) { return blackout(on); };
   handlers.identify = [this](const std::string& name, double seconds) { return identify(name, seconds); };
   handlers.aim = [this](const std::string& name, const Joints& joints, double level, double seconds) {

@@ -234,6 +234,7 @@ std::vector<HttpRoute> command_routes(HttpHandlers handlers) {
       {get, "/api/universes", [to](Request) { return json_answer(to->handlers.universes()); }},
       {get, "/api/room", [to](Request) { return to->room(); }},
       {get, "/api/room.png", [to](Request) { return to->room_png(); }},
+      {get, "/api/scene", [to](Request request) { return to->handlers.scene(request); }},
       {post, "/api/blackout", [to](Request request) { return to->blackout(request); }, 1024, true},
       {post, "/api/identify", [to](Request request) { return to->identify(request); }},
       {post, "/api/aim", [to](Request request) { return to->aim(request); }},

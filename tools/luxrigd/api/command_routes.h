@@ -20,6 +20,7 @@ struct HttpHandlers {
   std::function<std::string()> universes;  ///< JSON
   std::function<std::string()> room_json;  ///< empty until it is drawn
   std::function<std::string()> room_png;   ///< empty without a scene
+  std::function<HttpResponse(const HttpRequest&)> scene;  ///< SceneFile::answer()
   std::function<Result<void>(bool on)> blackout;
   /// Identifies a fixture by its light, for this many seconds.
   std::function<Result<void>(const std::string& fixture, double seconds)> identify;

@@ -294,6 +294,20 @@ export async function fetchRoom(): Promise<Room | undefined> {
   return answer.ok ? readRoom(await answer.json()) : undefined;
 }
 
+/** The room's geometry as binary glTF; 'none' if the rig has no scene. The browser keeps it, and asks each time whether
+ *  it is still the same. Rejects with a sentence for a person. */
+export async function fetchScene(): Promise<{glb: ArrayBuffer; etag: string}|'none'> {
+  const answer = await fetch('/api/scene', {cache: 'no-cache'}).catch(() => {
+    throw new Error('The room cannot be fetched.');
+  });
+  if (answer.status === 404) return 'none';
+  if (!answer.ok) {
+    const said = text(fieldsOf(await answer.json().catch(() => undefined))['error']);
+    throw new Error(`The room cannot be shown: ${said || `the daemon answered ${answer.status}`}.`);
+  }
+  return {glb: await answer.arrayBuffer(), etag: answer.headers.get('ETag') ?? ''};
+}
+
 /** Whether the daemon knows this browser; true also while it does not answer at all. */
 export async function isKnown(): Promise<boolean> {
   try {

@@ -3,14 +3,14 @@
 import { fetchRoom, type Status } from './api';
 import { element } from './dom';
 import { follow } from './live';
+import {RoomCard} from './room/room_card';
 import { Selection } from './selection';
 import { AlarmsView } from './views/alarms';
 import { ByHandView } from './views/by_hand';
 import { DevicesView, MetersView } from './views/devices';
 import { FixturesView } from './views/fixtures';
 import { HeaderView } from './views/header';
-import { OutputView } from './views/output';
-import { PlanView } from './views/plan';
+import {OutputView} from './views/output';
 import { PointsTable } from './views/points_table';
 import {QuestionView} from './views/question';
 import { themeButton } from './views/theme';
@@ -21,7 +21,7 @@ const header = new HeaderView(themeButton());
 const alarms = new AlarmsView();
 const question = new QuestionView();
 const tiles = new TilesView();
-const plan = new PlanView(selection);
+const room = new RoomCard(selection);
 const points = new PointsTable(selection);
 const fixtures = new FixturesView(selection);
 const byHand = new ByHandView();
@@ -30,10 +30,10 @@ const devices = new DevicesView();
 const output = new OutputView();
 
 const main = element(
-  'main',
-  {},
-  element('div', { class: 'column wide' }, plan.root, points.root),
-  element('div', { class: 'column' }, tiles.root, fixtures.root, byHand.root, meters.root, devices.root, output.root),
+    'main',
+    {},
+    element('div', {class: 'column wide'}, room.root, points.root),
+    element('div', {class: 'column'}, tiles.root, fixtures.root, byHand.root, meters.root, devices.root, output.root),
 );
 document.getElementById('app')!.replaceChildren(header.root, alarms.root, question.root, main);
 
@@ -48,9 +48,9 @@ async function wantRoom(status: Status): Promise<void> {
   if (asking || roomOf === status.rig) return;
   asking = true;
   try {
-    const room = await fetchRoom();
-    if (room) {
-      plan.setRoom(room);
+    const found = await fetchRoom();
+    if (found) {
+      room.setRoom(found);
       roomOf = status.rig;
     }
   } catch {
@@ -66,7 +66,7 @@ follow(
     alarms.show(status.alarms);
     question.show(status.question);
     tiles.show(status);
-    plan.show(status);
+    room.show(status);
     points.show(status.points);
     fixtures.show(status.fixtures);
     byHand.show(status);

@@ -65,6 +65,7 @@ class HttpApiTest : public ::testing::Test {
     handlers.status = [] { return std::string("{\"phase\":\"holding\"}"); };
     handlers.room_json = [] { return std::string("{}"); };
     handlers.room_png = [] { return std::string(); };
+    handlers.scene = [](const HttpRequest&) { return HttpResponse{200, "model/gltf-binary", "glTF"}; };
     handlers.blackout = [this](bool on) -> Result<void> {
       blackouts += on ? 1 : 100;
       return {};

@@ -1,7 +1,7 @@
 /** The room from above: picture, beams, fixtures with their level, measurement points by error. */
 
 import type {Question, Room, Status} from '../api';
-import { card, element, setAttribute, setText, svg } from '../dom';
+import {element, setAttribute, setText, svg} from '../dom';
 import { lux, percent } from '../format';
 import { judge } from '../judge';
 import {type Scale, type Spot, MARKER_PATHS, METER_RING, beamPath, meterSign, namePlace, scaleFor, unfold} from '../plan_layout';
@@ -31,6 +31,7 @@ interface PointMark {
 
 export class PlanView {
   readonly root: HTMLElement;
+  readonly legend = legend();
   private readonly stage = element('div', { class: 'plan-stage' });
   private readonly tip = element('div', { class: 'tip', 'aria-hidden': 'true' });
   private readonly drawing = svg('svg', { class: 'plan', role: 'img', 'aria-label': 'The room from above' });
@@ -46,7 +47,7 @@ export class PlanView {
 
   constructor(private readonly selection: Selection) {
     this.stage.append(this.drawing, this.tip);
-    this.root = card('plan', 'Room', this.stage, legend());
+    this.root = this.stage;
     new ResizeObserver(() => this.update()).observe(this.stage);
     selection.onChange(() => this.showSelection());
   }

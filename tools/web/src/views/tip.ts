@@ -39,6 +39,17 @@ export function fixtureTip(tip: HTMLElement, fixture: Fixture): void {
   ]);
 }
 
+/** reflectance: luminous, 0…1; undefined for glass. place: [m] world. */
+export function surfaceTip(
+    tip: HTMLElement, material: string, reflectance: number|undefined, place: readonly number[]): void {
+  const metres = (v: number): string => `${v.toFixed(2).replace(/^-(?=0\.00$)/, '').replace('-', '\u2212')} m`;
+  fill(tip, material || 'surface', '', [
+    ['reflectance', reflectance === undefined ? 'glass' : format.percent(reflectance)],
+    ['x, y', `${metres(place[0]!)}, ${metres(place[1]!)}`],
+    ['height', metres(place[2]!)],
+  ]);
+}
+
 /** Beside `at` (pixels of the drawing), kept inside the stage. */
 export function placeTip(tip: HTMLElement, at: Spot, drawing: Element, stage: HTMLElement): void {
   tip.classList.add('shown');
