@@ -1,5 +1,6 @@
 #pragma once
-/// Client requests to the daemon: translates request bodies into calls of its handlers.
+/// Client requests to the daemon: request bodies become calls of its handlers, and what these return the answers. Which
+/// path leads to which of them: route_table.h.
 
 #include <functional>
 #include <optional>
@@ -16,6 +17,8 @@ namespace luxrig {
 
 /// The daemon's handlers. They are called from the server's threads; each must be safe to call from any thread.
 struct HttpHandlers {
+  std::function<bool(const HttpRequest&)> knows;  ///< who asks has access; HttpApi sets it
+  std::function<std::string()> one_time_address;  ///< HttpApi sets it
   std::function<std::string()> status;     ///< JSON
   std::function<std::string()> universes;  ///< JSON
   std::function<std::string()> room_json;  ///< empty until it is drawn
@@ -51,10 +54,35 @@ struct HttpHandlers {
   std::function<Checked<std::string>()> reload;
 };
 
-/// The handlers are copied.
-[[nodiscard]] std::vector<HttpRoute> command_routes(HttpHandlers handlers);
+/// Answers to requests, one function for each route. A body that is not as the route's schema says is refused with 400
+/// and with what to send.
+namespace answer_to {
 
-/// A JSON answer that no cache keeps.
-[[nodiscard]] HttpResponse json_answer(std::string json);
+using Handlers = const HttpHandlers&;
+using Request = const HttpRequest&;
+
+[[nodiscard]] HttpResponse session(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse new_address(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse status(Handlers handlers, Request request);
+/// The body is one server-sent event.
+[[nodiscard]] HttpResponse events(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse universes(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse room(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse room_png(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse blackout(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse identify(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse aim(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse park(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse hand_back(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse apply(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse level(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse goal(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse release(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse bypass(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse question(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse answer(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse reload(Handlers handlers, Request request);
+
+}  // namespace answer_to
 
 }  // namespace luxrig
