@@ -20,6 +20,11 @@ luxrig::HttpHandlers checking_handlers() {
   handlers.knows = [](const luxrig::HttpRequest&) { return false; };
   handlers.one_time_address = handlers.status = handlers.universes =
       handlers.room_json = [] { return std::string("{}"); };
+  handlers.changes = [](const std::string&) { return std::string("{}"); };
+  handlers.rig = handlers.mesh = [] {
+    static const auto kept = std::make_shared<const luxrig::KeptAnswer>(luxrig::kept_answer("text/plain", "{}"));
+    return kept;
+  };
   handlers.room_png = [] { return std::string(); };
   handlers.blackout = [](bool) { return luxrig::Result<void>(); };
   handlers.identify = [](const std::string&, double seconds) {

@@ -9,7 +9,7 @@ import { createRequire } from 'node:module';
 import { tmpdir } from 'node:os';
 import path from 'node:path';
 import { fileURLToPath } from 'node:url';
-import { fc, MISDEEDS, requests, Values } from './api_requests.mjs';
+import { fc, MISDEEDS, put, requests, Values } from './api_requests.mjs';
 import { eventually } from './browser.mjs';
 
 const require = createRequire(new URL('../../tools/web/package.json', import.meta.url));
@@ -42,7 +42,7 @@ function schemaAt(...place) {
 }
 const json = 'application/json';
 const operations = Object.entries(file.paths).flatMap(([route, methods]) => Object.entries(methods).map(([method, operation]) =>
-  ({ schema: operation.requestBody?.content[json].schema, operation: { method, path: route, id: operation.operationId } })));
+  ({ schema: operation.requestBody?.content[json].schema, operation: { method, path: route, parameters: operation.parameters } })));
 
 const folder = mkdtempSync(path.join(tmpdir(), 'luxrig-api-'));
 const plan = path.join(folder, 'plan.json');
@@ -59,7 +59,7 @@ function ask(port, options, body) {
     const request = http.request({ host: '127.0.0.1', port, agent, ...options }, (response) => {
       const parts = [];
       const type = (response.headers['content-type'] ?? '').split(';')[0];
-      const done = () => resolve({ code: response.statusCode, type, body: Buffer.concat(parts).toString() });
+      const done = () => resolve({ code: response.statusCode, type, etag: response.headers.etag, body: Buffer.concat(parts).toString() });
       response.on('data', (part) => {
         parts.push(part);
         if (type !== 'text/event-stream' || !Buffer.concat(parts).includes('\n\n')) return;
@@ -98,13 +98,16 @@ try {
 
   const seen = new Map(); // "POST /api/level 200" -> how often
   const taken = new Map(); // "POST /api/level" -> keys of bodies that were taken
+  const known = {}; // values of parameters, from the last answer
   let reloads = 0;
-  const one = async ({ operation, sent, misdeed }) => {
-    let { method, path: route } = operation;
+  const one = async ({ operation, sent, parameters, misdeed }) => {
+    let { method } = operation;
+    const given = put(operation, parameters, known);
+    let route = given.path;
     if (route === '/api/reload' && !misdeed && ++reloads > kReloads) return;
     const { value } = sent;
     let { body } = sent;
-    const headers = { ...access };
+    const headers = { ...access, ...given.headers };
     if (body === undefined && misdeed !== undefined && method === 'post') body = '{}';
     if (body !== undefined) headers['Content-Type'] = json;
     let owed = MISDEEDS[misdeed];
@@ -115,12 +118,12 @@ try {
       case 'other origin': headers.Origin = `http://127.0.0.1:${port + 1}`; break;
       case 'other site': headers['Sec-Fetch-Site'] = 'cross-site'; break;
       case 'other method': method = 'put'; break;
-      case 'other path': route += '-'; break;
+      case 'other path': route = `${operation.path}-`; break;
       case 'other type':
         body ??= '{}';
         headers['Content-Type'] = 'text/plain';
         break;
-      case 'too long': body = ' '.repeat((file.paths[route][method].requestBody?.['x-max-bytes'] ?? 16384) + 1); break;
+      case 'too long': body = ' '.repeat((file.paths[operation.path][method].requestBody?.['x-max-bytes'] ?? 16384) + 1); break;
       case 'long headers': headers['X-Long'] = 'x'.repeat(9000); break;
     }
     if (misdeed === 'too long') headers['Content-Type'] = json;
@@ -145,12 +148,15 @@ try {
         response = file.components.responses[place.at(-1)];
       }
       assert.ok(response, `the file does not name this code: ${told}`);
-      assert.ok(response.content[answer.type], `the file does not name this type, ${answer.type}: ${told}`);
+      if (answer.code === 304) assert.equal(answer.body, '', told);
+      else assert.ok(response.content[answer.type], `the file does not name this type, ${answer.type}: ${told}`);
       place.push('content', answer.type, 'schema');
     }
+    if (answer.etag) known['If-None-Match'] = answer.etag;
     if (answer.type === json) {
       const validate = schemaAt(...place);
       assert.ok(validate(JSON.parse(answer.body)), `the file does not name this body: ${told}\n${JSON.stringify(validate.errors)}`);
+      if (operation.path === '/api/status') known.since = JSON.parse(answer.body).version;
     } else if (answer.type === 'text/event-stream') {
       const validate = schemaAt('components', 'schemas', 'Status');
       const event = /^event: status\ndata: (.*)\n\n/.exec(answer.body);
@@ -174,6 +180,7 @@ try {
   // The test would say nothing if all were refused: each operation was done, with each key that it takes.
   for (const { operation, schema } of operations) {
     const what = `${operation.method.toUpperCase()} ${operation.path}`;
+    if (file.paths[operation.path][operation.method].responses[304]) assert.ok(seen.get(`${what} 304`) > 0, `${what} was never the same`);
     assert.ok(seen.get(`${what} 200`) > 0, `${what} was never done: ${JSON.stringify([...seen])}`);
     if (!schema) continue;
     if (schema.$ref === undefined) assert.ok(seen.get(`${what} 400`) > 0, `${what} was never refused`);

@@ -102,7 +102,24 @@ export const MISDEEDS = {
   'long headers': 431,
 };
 
-/** One request to one operation: {operation, body: text or undefined, value, misdeed}. */
+const ANSWERED = Symbol('what an answer before had');
+
+/** Values of parameters, in the query or in headers: none, those of an answer before, and rubbish. */
+const parametersOf = (parameters) => fc.record(Object.fromEntries((parameters ?? []).map(({ name, in: where }) =>
+  [name, fc.oneof(fc.constant(undefined), fc.constant(ANSWERED), where === 'header' ? fc.constantFrom('*', '"0"', 'W/"0"', 'x') : fc.string({ unit: 'binary', maxLength: 60 }))])));
+
+/** The path and headers with these parameters. known: values of answers before, by name. */
+export function put(operation, parameters, known) {
+  const headers = {}, query = new URLSearchParams();
+  for (const { name, in: where } of operation.parameters ?? []) {
+    const value = parameters[name] === ANSWERED ? known[name] : parameters[name];
+    if (value !== undefined && where === 'header') headers[name] = value;
+    else if (value !== undefined) query.set(name, value);
+  }
+  return { path: operation.path + (query.size ? `?${query}` : ''), headers };
+}
+
+/** One request to one operation: {operation, sent: {body: text or undefined, value}, parameters, misdeed}. */
 export function requests(operations, values) {
   const of = ({ schema, operation }) => {
     const bodies = schema
@@ -112,7 +129,7 @@ export function requests(operations, values) {
         { weight: 1, arbitrary: fc.string({ maxLength: 60 }).map((text) => ({ body: `${text}{` })) },
         { weight: 1, arbitrary: fc.constantFrom('', '[', '{"on":true', '['.repeat(1000), '{"a":'.repeat(30), '\0', '1e999', '{"on":true}{}', '{"fixtures":["\\ud800"],"level":1}').map((body) => ({ body })) })
       : fc.constant({});
-    return fc.record({ operation: fc.constant(operation), sent: bodies,
+    return fc.record({ operation: fc.constant(operation), sent: bodies, parameters: parametersOf(operation.parameters),
       misdeed: fc.oneof({ weight: 9, arbitrary: fc.constant(undefined) }, fc.constantFrom(...Object.keys(MISDEEDS))) });
   };
   return fc.oneof(...operations.map((one) => ({ weight: one.schema ? 3 : 1, arbitrary: of(one) })));

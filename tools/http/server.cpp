@@ -41,6 +41,7 @@ constexpr milliseconds kIdle{15000}, kHead{5000}, kBody{10000}, kLargeBody{30000
 constexpr milliseconds kTick{100};
 constexpr int kTicksPerEvent = 2;
 constexpr int kLowPriority = 10;
+constexpr int kNotModified = 304;
 
 /// Linux keeps the nice value per thread.
 void lower_priority() { ::setpriority(PRIO_PROCESS, static_cast<id_t>(::syscall(SYS_gettid)), kLowPriority); }
@@ -108,6 +109,8 @@ const char* phrase_of(int status) {
       return "OK";
     case 303:
       return "See Other";
+    case kNotModified:
+      return "Not Modified";
     case 400:
       return "Bad Request";
     case 401:
@@ -120,6 +123,8 @@ const char* phrase_of(int status) {
       return "Method Not Allowed";
     case 409:
       return "Conflict";
+    case 412:
+      return "Precondition Failed";
     case 413:
       return "Content Too Large";
     case 415:
@@ -331,9 +336,11 @@ class HttpServer::State::Connection : public std::enable_shared_from_this<Connec
   void answer(const HttpResponse& response, bool last) {
     doing_ = Doing::answers;
     free_body();
-    std::string text = fmt::format("HTTP/1.1 {} {}\r\n{}Content-Type: {}\r\nContent-Length: {}\r\nConnection: {}\r\n",
-                                   response.status, phrase_of(response.status), server_.headers, response.content_type,
-                                   response.body.size(), last ? "close" : "keep-alive");
+    std::string text = fmt::format("HTTP/1.1 {} {}\r\n{}Connection: {}\r\n", response.status,
+                                   phrase_of(response.status), server_.headers, last ? "close" : "keep-alive");
+    // 304 has no body, and a length would be that of the body which the peer has.
+    if (response.status != kNotModified)
+      text += fmt::format("Content-Type: {}\r\nContent-Length: {}\r\n", response.content_type, response.body.size());
     for (const auto& [name, value] : response.headers) text += name + ": " + value + "\r\n";
     text += "\r\n";
     if (!head_only_) text += response.body;

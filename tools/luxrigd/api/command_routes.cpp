@@ -12,6 +12,7 @@ namespace luxrig {
 namespace {
 
 constexpr double kIdentifyFor_s = 5;
+constexpr const char* kBeingDrawn = "the room is being drawn: ask again in a second";
 
 /// A non-empty list of strings; nullopt if it is anything else.
 std::optional<std::vector<std::string>> names_in(const nlohmann::json& body, const char* key) {
@@ -31,8 +32,8 @@ std::optional<std::string> id_in(const nlohmann::json& body) {
 }
 
 /// A JSON answer that no cache keeps.
-HttpResponse json_answer(std::string json) {
-  return {200, "application/json", std::move(json), {{"Cache-Control", "no-store"}}};
+HttpResponse json_answer(std::string text) {
+  return {200, "application/json", std::move(text), {{"Cache-Control", "no-store"}}};
 }
 
 HttpResponse dumped_answer(const nlohmann::json& answer) {
@@ -92,7 +93,10 @@ HttpResponse new_address(Handlers handlers, Request) {
   return dumped_answer({{"address", handlers.one_time_address()}});
 }
 
-HttpResponse status(Handlers handlers, Request) { return json_answer(handlers.status()); }
+HttpResponse status(Handlers handlers, Request request) {
+  const auto since = request.parameter("since");
+  return json_answer(since ? handlers.changes(*since) : handlers.status());
+}
 
 HttpResponse events(Handlers handlers, Request) {
   return {200, "text/event-stream", "event: status\ndata: " + handlers.status() + "\n\n"};
@@ -233,9 +237,20 @@ HttpResponse answer(Handlers handlers, Request request) {
   return dumped_answer({{"taken", true}});
 }
 
+HttpResponse rig(Handlers handlers, Request request) {
+  const auto rig = handlers.rig();
+  return rig ? answer_with(*rig, request) : http_refusal(503, kBeingDrawn);
+}
+
+HttpResponse mesh(Handlers handlers, Request request) {
+  if (const auto mesh = handlers.mesh()) return answer_with(*mesh, request);
+  return handlers.rig() ? http_refusal(404, "this rig has no scene to draw, or one that is too large")
+                        : http_refusal(503, kBeingDrawn);
+}
+
 HttpResponse room(Handlers handlers, Request) {
   std::string room = handlers.room_json();
-  if (room.empty()) return http_refusal(503, "the room is being drawn: ask again in a second");
+  if (room.empty()) return http_refusal(503, kBeingDrawn);
   return json_answer(std::move(room));
 }
 

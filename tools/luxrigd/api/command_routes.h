@@ -3,6 +3,7 @@
 /// path leads to which of them: route_table.h.
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "core/result.h"
 #include "core/rig/frames.h"
 #include "core/show/by_hand.h"
+#include "tools/http/kept_answer.h"
 #include "tools/http/server.h"
 #include "tools/luxrigd/hand_question.h"
 
@@ -20,7 +22,9 @@ struct HttpHandlers {
   std::function<bool(const HttpRequest&)> knows;  ///< who asks has access; HttpApi sets it
   std::function<std::string()> one_time_address;  ///< HttpApi sets it
   std::function<std::string()> status;     ///< JSON
+  std::function<std::string(const std::string& version)> changes;  ///< JSON: the status since that version
   std::function<std::string()> universes;  ///< JSON
+  std::function<std::shared_ptr<const KeptAnswer>()> rig, mesh;  ///< null until they are made
   std::function<std::string()> room_json;  ///< empty until it is drawn
   std::function<std::string()> room_png;   ///< empty without a scene
   std::function<Result<void>(bool on)> blackout;
@@ -67,6 +71,8 @@ using Request = const HttpRequest&;
 /// The body is one server-sent event.
 [[nodiscard]] HttpResponse events(Handlers handlers, Request request);
 [[nodiscard]] HttpResponse universes(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse rig(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse mesh(Handlers handlers, Request request);
 [[nodiscard]] HttpResponse room(Handlers handlers, Request request);
 [[nodiscard]] HttpResponse room_png(Handlers handlers, Request request);
 [[nodiscard]] HttpResponse blackout(Handlers handlers, Request request);

@@ -16,7 +16,13 @@ Schema content_with(const char* type, const Schema& body) {
 }
 
 Schema response(const ApiAnswer& answer) {
-  return {{"description", answer.what}, {"content", content_with(answer.content_type, answer.body)}};
+  Schema out = {{"description", answer.what}};
+  if (answer.content_type) out["content"] = content_with(answer.content_type, answer.body);
+  return out;
+}
+
+Schema parameter(const char* where, const char* name, const char* what) {
+  return {{"name", name}, {"in", where}, {"description", what}, {"schema", {{"type", "string"}}}};
 }
 
 std::string name_of_refusal(const ApiAnswer& refusal) { return "refusal-" + std::to_string(refusal.status); }
@@ -52,6 +58,9 @@ Schema operation(const ApiRoute& route) {
                 {"security", Schema::array()}};
   if (route.role != Role::anybody)
     for (const char* scheme : {"token", "cookie"}) out["security"].push_back({{scheme, Schema::array()}});
+  for (const ApiParameter& one : route.parameters) out["parameters"].push_back(parameter("query", one.name, one.what));
+  if (route.kept)
+    out["parameters"].push_back(parameter("header", "If-None-Match", "ETag of the answer that the client has"));
   if (!route.body.is_null())
     out["requestBody"] = {{"required", true},
                           {"x-max-bytes", route.max_body_bytes},

@@ -75,6 +75,19 @@ ApiAnswer refused() {
 }
 ApiAnswer failed() { return {500, "the disk or a bus has not taken it: the text says what holds", ref("Refusal")}; }
 
+ApiAnswer being_drawn() { return {503, "the room is being drawn: ask again in a second", ref("Refusal")}; }
+
+/// With an ETag.
+ApiRoute kept(ApiRoute route) {
+  route.answers.push_back({304, "the client has it: If-None-Match", nullptr, nullptr});
+  route.kept = true;
+  return route;
+}
+ApiRoute with(std::vector<ApiParameter> parameters, ApiRoute route) {
+  route.parameters = std::move(parameters);
+  return route;
+}
+
 std::vector<ApiRoute> made_table() {
   const Role look = Role::look, operate = Role::operate, configure = Role::configure;
   const Schema none;
@@ -93,14 +106,15 @@ std::vector<ApiRoute> made_table() {
        none,
        {ok(answer({{"address", text()}}))},
        answer_to::new_address},
-      {"GET",
-       "/api/status",
-       look,
-       "all that is known of the running rig",
-       none,
-       {ok(any_of({ref("Status"), {{"type", "object"}, {"maxProperties", 0}}}),
-           "the status; empty in the first moment")},
-       answer_to::status},
+      with({{"since", "version of an answer before, or nothing: the answer has what changed since, or all of it"}},
+           {"GET",
+            "/api/status",
+            look,
+            "all that is known of the running rig; with `since` only what changed",
+            none,
+            {ok(any_of({ref("Status"), ref("StatusChanges"), {{"type", "object"}, {"maxProperties", 0}}}),
+                "the status; empty in the first moment")},
+            answer_to::status}),
       {"GET",
        "/api/events",
        look,
@@ -119,12 +133,30 @@ std::vector<ApiRoute> made_table() {
        none,
        {ok(list(ref("Universe")), "a list of universes")},
        answer_to::universes},
+      kept({"GET",
+            "/api/rig",
+            look,
+            "what the rig is: all that only a reload changes",
+            none,
+            {ok(ref("Rig"), "the rig"), being_drawn()},
+            answer_to::rig}),
+      kept(
+          {"GET",
+           "/api/rig/mesh",
+           look,
+           "the scene as triangles: three little-endian 32-bit words, LXM1, number of vertices and of triangles; x, y, "
+           "z of each vertex as 32-bit floats; three vertices of each triangle; the material of each triangle",
+           none,
+           {{200, "the mesh", nullptr, "application/octet-stream"},
+            {404, "this rig has no scene to draw, or one that is too large", ref("Refusal")},
+            being_drawn()},
+           answer_to::mesh}),
       {"GET",
        "/api/room",
        look,
        "bounds of the room, and where its picture from above lies",
        none,
-       {ok(ref("Room"), "the room"), {503, "the room is being drawn: ask again in a second", ref("Refusal")}},
+       {ok(ref("Room"), "the room"), being_drawn()},
        answer_to::room},
       {"GET",
        "/api/room.png",

@@ -22,8 +22,14 @@ enum class Role {
 struct ApiAnswer {
   int status = 200;
   const char* what = "";
-  schema::Schema body;  ///< null: bytes of another type than JSON
-  const char* content_type = "application/json";
+  schema::Schema body;                            ///< null: none, or bytes of another type than JSON
+  const char* content_type = "application/json";  ///< null: no body
+};
+
+/// In the query; may be left out.
+struct ApiParameter {
+  const char* name;
+  const char* what;
 };
 
 struct ApiRoute {
@@ -38,6 +44,8 @@ struct ApiRoute {
   std::size_t max_body_bytes = 16u << 10;
   bool urgent = false;  ///< never queues behind other requests
   bool events = false;  ///< a stream of server-sent events
+  std::vector<ApiParameter> parameters{};
+  bool kept = false;  ///< has an ETag, and 304 for If-None-Match
 };
 
 [[nodiscard]] const std::vector<ApiRoute>& route_table();

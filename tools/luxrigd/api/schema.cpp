@@ -13,7 +13,7 @@ Schema plain(double value) {
   return value;
 }
 
-Schema object(std::initializer_list<Key> keys, bool closed) {
+Schema object(const std::vector<Key>& keys, bool closed) {
   Schema out = {{"type", "object"}};
   Schema needed = Schema::array(), properties = Schema::object();
   for (const Key& key : keys) {
@@ -89,12 +89,19 @@ Schema any_of(std::initializer_list<Schema> schemas) {
   return out;
 }
 
+Schema or_null(Schema schema) { return any_of({std::move(schema), {{"type", "null"}}}); }
+
 Schema ref(const std::string& component) { return {{"$ref", "#/components/schemas/" + component}}; }
 
 Key maybe(const char* name, Schema of) { return {name, std::move(of), false}; }
 Key never(const char* name) { return {name, false, false}; }
 
-Schema answer(std::initializer_list<Key> keys) { return object(keys, true); }
-Schema request(std::initializer_list<Key> keys) { return object(keys, false); }
+std::vector<Key> both(std::vector<Key> some, const std::vector<Key>& more) {
+  some.insert(some.end(), more.begin(), more.end());
+  return some;
+}
+
+Schema answer(const std::vector<Key>& keys) { return object(keys, true); }
+Schema request(const std::vector<Key>& keys) { return object(keys, false); }
 
 }  // namespace luxrig::schema

@@ -30,6 +30,8 @@ using Schema = nlohmann::ordered_json;
 [[nodiscard]] Schema list(Schema items, std::size_t least = 0);
 /// [x, y, z], or as many numbers as it says.
 [[nodiscard]] Schema vector(const char* what = "", std::size_t length = 3);
+/// Or null.
+[[nodiscard]] Schema or_null(Schema schema);
 [[nodiscard]] Schema any_of(std::initializer_list<Schema> schemas);
 /// A schema of this name in the file's components.
 [[nodiscard]] Schema ref(const std::string& component);
@@ -43,9 +45,11 @@ struct Key {
 /// A key that must be absent.
 [[nodiscard]] Key never(const char* name);
 
+[[nodiscard]] std::vector<Key> both(std::vector<Key> some, const std::vector<Key>& more);
+
 /// With these keys and no others: an answer.
-[[nodiscard]] Schema answer(std::initializer_list<Key> keys);
+[[nodiscard]] Schema answer(const std::vector<Key>& keys);
 /// With these keys; others are not read: a request.
-[[nodiscard]] Schema request(std::initializer_list<Key> keys);
+[[nodiscard]] Schema request(const std::vector<Key>& keys);
 
 }  // namespace luxrig::schema

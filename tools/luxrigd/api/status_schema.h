@@ -5,7 +5,7 @@
 
 namespace luxrig {
 
-/// By name: Status, Question, HandAnswer and others, for the components of the OpenAPI file.
+/// By name: Status, StatusChanges, Rig and others, for the components of the OpenAPI file.
 [[nodiscard]] schema::Schema status_schemas();
 
 }  // namespace luxrig

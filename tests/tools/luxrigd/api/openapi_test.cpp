@@ -8,13 +8,14 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "tests/folders.h"
 #include "tools/luxrigd/api/route_table.h"
 
 namespace luxrig {
 namespace {
 
 TEST(OpenApi, TheCheckedInFileIsWhatTheTableGives) {
-  std::ifstream in(LUXRIG_SOURCE_DIR "/tools/luxrigd/openapi.json", std::ios::binary);
+  std::ifstream in(test::source_folder() / "tools/luxrigd/openapi.json", std::ios::binary);
   const std::string file((std::istreambuf_iterator<char>(in)), {});
   EXPECT_TRUE(file == openapi_json())
       << "write it anew: cmake --build --preset release --target openapi, and look at the difference";
