@@ -9,7 +9,7 @@
 #include "tools/http/json_body.h"
 #include "tools/http/request_reader.h"
 #include "tools/luxrigd/api/access.h"
-#include "tools/luxrigd/api/command_routes.h"
+#include "tools/luxrigd/api/route_table.h"
 
 namespace {
 
@@ -17,7 +17,14 @@ using luxrig::RequestReader;
 
 luxrig::HttpHandlers checking_handlers() {
   luxrig::HttpHandlers handlers;
-  handlers.status = handlers.universes = handlers.room_json = [] { return std::string("{}"); };
+  handlers.knows = [](const luxrig::HttpRequest&) { return false; };
+  handlers.one_time_address = handlers.status = handlers.universes =
+      handlers.room_json = [] { return std::string("{}"); };
+  handlers.changes = [](const std::string&) { return std::string("{}"); };
+  handlers.rig = [] {
+    static const auto kept = std::make_shared<const luxrig::KeptAnswer>(luxrig::kept_answer("text/plain", "{}"));
+    return kept;
+  };
   handlers.room_png = [] { return std::string(); };
   handlers.scene = [](const luxrig::HttpRequest&) { return luxrig::HttpResponse{}; };
   handlers.blackout = [](bool) { return luxrig::Result<void>(); };
@@ -99,7 +106,7 @@ int status_of(std::string_view bytes, std::size_t part, const std::vector<luxrig
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const std::vector<luxrig::HttpRoute> routes = luxrig::command_routes(checking_handlers());
+  static const std::vector<luxrig::HttpRoute> routes = luxrig::http_routes(checking_handlers());
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);
   const int whole = status_of(bytes, std::max<std::size_t>(size, 1), routes);
   LUXRIG_CHECK(whole == 0 || (whole >= 200 && whole < 600), "status {}", whole);

@@ -41,6 +41,7 @@ constexpr milliseconds kIdle{15000}, kHead{5000}, kBody{10000}, kLargeBody{30000
 constexpr milliseconds kTick{100};
 constexpr int kTicksPerEvent = 2;
 constexpr int kLowPriority = 10;
+constexpr int kNotModified = 304;
 
 /// Linux keeps the nice value per thread.
 void lower_priority() { ::setpriority(PRIO_PROCESS, static_cast<id_t>(::syscall(SYS_gettid)), kLowPriority); }
@@ -108,6 +109,8 @@ const char* phrase_of(int status) {
       return "OK";
     case 303:
       return "See Other";
+    case kNotModified:
+      return "Not Modified";
     case 400:
       return "Bad Request";
     case 401:
@@ -120,6 +123,8 @@ const char* phrase_of(int status) {
       return "Method Not Allowed";
     case 409:
       return "Conflict";
+    case 412:
+      return "Precondition Failed";
     case 413:
       return "Content Too Large";
     case 415:
@@ -156,6 +161,8 @@ struct HttpServer::State {
 
   explicit State(HttpServerOptions given) : options(std::move(given)) {
     for (const auto& [name, value] : options.headers) headers += name + ": " + value + "\r\n";
+    for (const HttpRoute& route : options.routes)
+      if (route.events) events = &route;
   }
 
   template <class Acceptor>
@@ -167,6 +174,7 @@ struct HttpServer::State {
   [[nodiscard]] bool stream_is_free(const std::string& credential) const;
 
   HttpServerOptions options;
+  const HttpRoute* events = nullptr;  // null if no route is a stream
   std::string headers;
   asio::io_context io{1};  // one thread uses everything below, except the lanes
   asio::ip::tcp::acceptor tcp{io};
@@ -264,21 +272,22 @@ class HttpServer::State::Connection : public std::enable_shared_from_this<Connec
     head_only_ = request.method == "HEAD";
     const std::string method = head_only_ ? "GET" : request.method;
     const HttpServerOptions& options = server_.options;
-    events_ = !options.events_path.empty() && request.path == options.events_path && request.method == "GET";
     bool known_path = false;
     route_ = nullptr;
     for (const HttpRoute& route : options.routes) {
       known_path = known_path || route.path == request.path;
-      if (route.path == request.path && route.method == method) route_ = &route;
+      // A stream has no length that HEAD could tell.
+      if (route.path == request.path && route.method == (route.events ? request.method : method)) route_ = &route;
     }
-    const bool page = !route_ && !events_ && method == "GET" && options.page;
-    if (!route_ && !events_ && !page) {
+    events_ = route_ && route_->events;
+    const bool page = !known_path && method == "GET" && options.page;
+    if (!route_ && !page) {
       return known_path ? http_refusal(405, "this route is not for " + request.method.substr(0, 16))
                         : http_refusal(404, options.no_route ? options.no_route(request.path)
                                                              : "there is no route " + request.path);
     }
     credential_ = trusted_ ? "socket" : options.credential ? options.credential(request) : "anybody";
-    if (credential_.empty() && !page) return http_refusal(401, options.no_credential);
+    if (credential_.empty() && !page && !route_->for_anybody) return http_refusal(401, options.no_credential);
     if (events_ && !server_.stream_is_free(credential_)) return http_refusal(503, "too many pages are open");
     const std::size_t most = route_ ? route_->max_body_bytes : 0;
     const bool large = most > kLargeBodyBytes && reader_->has_body();
@@ -327,9 +336,11 @@ class HttpServer::State::Connection : public std::enable_shared_from_this<Connec
   void answer(const HttpResponse& response, bool last) {
     doing_ = Doing::answers;
     free_body();
-    std::string text = fmt::format("HTTP/1.1 {} {}\r\n{}Content-Type: {}\r\nContent-Length: {}\r\nConnection: {}\r\n",
-                                   response.status, phrase_of(response.status), server_.headers, response.content_type,
-                                   response.body.size(), last ? "close" : "keep-alive");
+    std::string text = fmt::format("HTTP/1.1 {} {}\r\n{}Connection: {}\r\n", response.status,
+                                   phrase_of(response.status), server_.headers, last ? "close" : "keep-alive");
+    // 304 has no body, and a length would be that of the body which the peer has.
+    if (response.status != kNotModified)
+      text += fmt::format("Content-Type: {}\r\nContent-Length: {}\r\n", response.content_type, response.body.size());
     for (const auto& [name, value] : response.headers) text += name + ": " + value + "\r\n";
     text += "\r\n";
     if (!head_only_) text += response.body;
@@ -441,7 +452,7 @@ void HttpServer::State::tell_streams() {
   if (!event_wanted || std::none_of(connections.begin(), connections.end(), is_stream)) return;
   event_wanted = false;
   looking.push([this, is_stream] {
-    const auto text = std::make_shared<const std::string>(options.event());
+    const auto text = std::make_shared<const std::string>(called(events->handle, {}).body);
     asio::post(io, [this, is_stream, text] {
       const auto copy = connections;
       for (const auto& connection : copy)

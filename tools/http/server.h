@@ -19,17 +19,19 @@ struct HttpRoute {
   /// Called on threads of the server.
   std::function<HttpResponse(const HttpRequest&)> handle;
   std::size_t max_body_bytes = 16u << 10;
-  bool urgent = false;  ///< runs on a thread of its own, at normal priority
+  bool urgent = false;       ///< runs on a thread of its own, at normal priority
+  bool for_anybody = false;  ///< for unknown senders, too
+  /// A stream of server-sent events, for GET: what `handle` answers to an empty request is one whole event,
+  /// `event: …\ndata: …\n\n`, for all readers, five a second. One route at most.
+  bool events = false;
 };
 
 struct HttpServerOptions {
   std::vector<HttpRoute> routes;
   /// Answers every GET without a route, for all senders. Empty: 404.
   std::function<HttpResponse(const HttpRequest&)> page{};
-  /// GET of this path is a stream of server-sent events, each a whole `event: …\ndata: …\n\n`, five a second.
-  std::string events_path{};
-  std::function<std::string()> event{};
-  /// The sender of a request, from its headers. Empty = unknown: only `page` answers then. Called on the server's wire
+  /// The sender of a request, from its headers. Empty = unknown: only `page` and routes for anybody answer
+  /// then. Called on the server's wire
   /// thread, so it must be quick. Without this function everything is allowed to all senders. Not called for the Unix
   /// socket, whose peers are trusted.
   std::function<std::string(const HttpRequest&)> credential{};

@@ -311,17 +311,36 @@ std::string Daemon::universes_json() {
   return universes.value_or(nlohmann::json::array()).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
+std::shared_ptr<const PublishedStatus> Daemon::published() const {
+  const std::lock_guard lock(mutex_);
+  return published_;
+}
+
+StatusInput Daemon::input_of(const PublishedStatus& status) {
+  return {status.session->rig, status.show,          status.devices,
+          status.output,       options_.simulated,   started_,
+          status.at,           options_.sim_control, questions_.present(now())};
+}
+
 HttpHandlers Daemon::handlers() {
   HttpHandlers handlers;
   handlers.status = [this]() -> std::string {
-    std::shared_ptr<const PublishedStatus> last;
+    const auto last = published();
+    return last ? status_json(input_of(*last)) : "{}";
+  };
+  handlers.changes = [this](const std::string& version) -> std::string {
+    const auto last = published();
+    if (!last) return "{}";
+    std::shared_ptr<const KeptAnswer> rig;
     {
       const std::lock_guard lock(mutex_);
-      last = published_;
+      if (last->session == session_) rig = room_.rig;
     }
-    if (!last) return "{}";
-    return status_json({last->session->rig, last->show, last->devices, last->output, options_.simulated, started_,
-                        last->at, options_.sim_control, questions_.present(now())});
+    return changes_.since(version, input_of(*last), last->session, rig ? std::string_view(rig->etag) : "");
+  };
+  handlers.rig = [this] {
+    const std::lock_guard lock(mutex_);
+    return room_.rig;
   };
   handlers.universes = [this] { return universes_json(); };
   handlers.room_json = [this] {

@@ -17,6 +17,7 @@
 #include "drivers/registry.h"
 #include "tools/luxrigd/api/http_api.h"
 #include "tools/luxrigd/api/room_view.h"
+#include "tools/luxrigd/api/status_changes.h"
 #include "tools/luxrigd/bus_thread.h"
 #include "tools/luxrigd/claims.h"
 #include "tools/luxrigd/guardian/guardian.h"
@@ -137,6 +138,10 @@ class Daemon {
   /// Fixture by name; a housing's name gives its first emitter.
   [[nodiscard]] Result<std::size_t> fixture_called(const std::string& name) const;
   [[nodiscard]] std::string universes_json();
+  /// Null before the first tick.
+  [[nodiscard]] std::shared_ptr<const PublishedStatus> published() const;
+  /// status: must outlive the result.
+  [[nodiscard]] StatusInput input_of(const PublishedStatus& status);
   void send_program();
   void publish(Time at);
   /// Claims the rig's outputs; fails if another process holds one.
@@ -198,6 +203,7 @@ class Daemon {
   std::shared_ptr<RigFileWatch> rig_file_watch_;
   std::optional<Time> rig_file_changed_at_, unsaved_since_;
   RoomView room_;
+  StatusChanges changes_;                             ///< guards itself
   std::shared_ptr<const PublishedStatus> published_;  ///< null before the first tick
   std::deque<Command> commands_;
 

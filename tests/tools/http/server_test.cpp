@@ -59,6 +59,12 @@ std::string post(const std::string& path, const std::string& body, const std::st
          body;
 }
 
+HttpRoute stream_of(const std::string& event) {
+  return {"GET", "/events", [event](const HttpRequest&) { return HttpResponse{200, "text/event-stream", event}; },
+          0,     false,     false,
+          true};
+}
+
 class ServerTest : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -94,9 +100,8 @@ class ServerTest : public ::testing::Test {
            return HttpResponse{};
          },
          1024, true},
+        stream_of("event: status\ndata: {}\n\n"),
     };
-    options.events_path = "/events";
-    options.event = [] { return std::string("event: status\ndata: {}\n\n"); };
     server = std::make_unique<HttpServer>(std::move(options));
     const auto bound = server->bind(0);
     ASSERT_TRUE(bound);
@@ -338,12 +343,17 @@ TEST_F(ServerTest, ItsOwnClientWorks) {
 TEST(HttpServer, RequiresACredentialOnItsPortButNotOnItsUnixSocket) {
   const std::string file = "/tmp/luxrig-http-test-" + std::to_string(::getpid()) + ".socket";
   HttpServerOptions options;
-  options.routes = {{"GET", "/who", [](const HttpRequest& request) {
+  options.routes = {{"GET", "/who",
+                     [](const HttpRequest& request) {
                        return HttpResponse{200, "text/plain", request.credential};
-                     }}};
+                     }},
+                    {"GET", "/open",
+                     [](const HttpRequest& request) {
+                       return HttpResponse{200, "text/plain", "for anybody" + request.credential};
+                     },
+                     0, false, true},
+                    stream_of("data: 1\n\n")};
   options.page = [](const HttpRequest&) { return HttpResponse{200, "text/plain", "the page"}; };
-  options.events_path = "/events";
-  options.event = [] { return std::string("data: 1\n\n"); };
   options.credential = [](const HttpRequest& request) {
     return std::string(request.header("authorization") == "Bearer right" ? "known" : "");
   };
@@ -356,6 +366,8 @@ TEST(HttpServer, RequiresACredentialOnItsPortButNotOnItsUnixSocket) {
   EXPECT_EQ(http_get(peer, "/who")->status, 401);
   EXPECT_EQ(http_get(peer, "/events")->status, 401);
   EXPECT_EQ(http_get(peer, "/")->body, "the page");
+  EXPECT_EQ(http_get(peer, "/open")->body, "for anybody");
+  EXPECT_EQ(http_post_json(peer, "/open", "{}")->status, 405);
   peer.token = "wrong";
   EXPECT_EQ(http_get(peer, "/who")->status, 401);
   peer.token = "right";

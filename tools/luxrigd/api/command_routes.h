@@ -1,7 +1,9 @@
 #pragma once
-/// Client requests to the daemon: translates request bodies into calls of its handlers.
+/// Client requests to the daemon: request bodies become calls of its handlers, and what these return the answers. Which
+/// path leads to which of them: route_table.h.
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,6 +11,7 @@
 #include "core/result.h"
 #include "core/rig/frames.h"
 #include "core/show/by_hand.h"
+#include "tools/http/kept_answer.h"
 #include "tools/http/server.h"
 #include "tools/luxrigd/hand_question.h"
 
@@ -16,8 +19,12 @@ namespace luxrig {
 
 /// The daemon's handlers. They are called from the server's threads; each must be safe to call from any thread.
 struct HttpHandlers {
+  std::function<bool(const HttpRequest&)> knows;  ///< who asks has access; HttpApi sets it
+  std::function<std::string()> one_time_address;  ///< HttpApi sets it
   std::function<std::string()> status;     ///< JSON
+  std::function<std::string(const std::string& version)> changes;  ///< JSON: the status since that version
   std::function<std::string()> universes;  ///< JSON
+  std::function<std::shared_ptr<const KeptAnswer>()> rig;  ///< null until they are made
   std::function<std::string()> room_json;  ///< empty until it is drawn
   std::function<std::string()> room_png;   ///< empty without a scene
   std::function<HttpResponse(const HttpRequest&)> scene;  ///< SceneFile::answer()
@@ -52,10 +59,37 @@ struct HttpHandlers {
   std::function<Checked<std::string>()> reload;
 };
 
-/// The handlers are copied.
-[[nodiscard]] std::vector<HttpRoute> command_routes(HttpHandlers handlers);
+/// Answers to requests, one function for each route. A body that is not as the route's schema says is refused with 400
+/// and with what to send.
+namespace answer_to {
 
-/// A JSON answer that no cache keeps.
-[[nodiscard]] HttpResponse json_answer(std::string json);
+using Handlers = const HttpHandlers&;
+using Request = const HttpRequest&;
+
+[[nodiscard]] HttpResponse session(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse new_address(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse status(Handlers handlers, Request request);
+/// The body is one server-sent event.
+[[nodiscard]] HttpResponse events(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse universes(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse rig(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse scene(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse room(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse room_png(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse blackout(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse identify(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse aim(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse park(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse hand_back(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse apply(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse level(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse goal(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse release(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse bypass(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse question(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse answer(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse reload(Handlers handlers, Request request);
+
+}  // namespace answer_to
 
 }  // namespace luxrig

@@ -4,10 +4,9 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <nlohmann/json.hpp>
-
 #include "tools/http/server.h"
 #include "tools/luxrigd/api/access.h"
+#include "tools/luxrigd/api/route_table.h"
 #include "tools/process/meeting_place.h"
 #include "tools/process/runtime_folder.h"
 
@@ -38,12 +37,11 @@ struct HttpApi::State {
 
   [[nodiscard]] std::string one_time_address() { return address + "?open=" + access.one_time_code(); }
 
-  /// Answers any client: the page's files, and whether the browser is known. A one-time address makes it known.
+  /// Answers any client with the page's files. A one-time address makes its browser known.
   HttpResponse page(const HttpRequest& request) {
-    const bool known = !access.credential(request).empty();
-    if (request.path == "/api/session") return json_answer(known ? "{\"open\":true}" : "{\"open\":false}");
     if (request.path != "/") return static_file(web_folder, request.path);
     if (const auto code = request.parameter("open")) {
+      const bool known = !access.credential(request).empty();
       const auto session = access.open(*code);
       if (!session && !known) {
         return {403, "text/plain; charset=utf-8",
@@ -61,13 +59,12 @@ struct HttpApi::State {
 
   [[nodiscard]] HttpServerOptions options() {
     HttpServerOptions options;
-    options.routes = command_routes(handlers);
-    options.routes.push_back({"POST", "/api/session", [this](const HttpRequest&) {
-                                return json_answer(nlohmann::json{{"address", one_time_address()}}.dump());
-                              }});
+    handlers.knows = [this](const HttpRequest& request) {
+      return !request.credential.empty() || !access.credential(request).empty();
+    };
+    handlers.one_time_address = [this] { return one_time_address(); };
+    options.routes = http_routes(handlers);
     options.page = [this](const HttpRequest& request) { return page(request); };
-    options.events_path = "/api/events";
-    options.event = [this] { return "event: status\ndata: " + handlers.status() + "\n\n"; };
     options.credential = [this](const HttpRequest& request) { return access.credential(request); };
     options.no_credential =
         "the daemon does not know who asks: open its page with the address that luxrig page prints; a program sends "

@@ -6,7 +6,7 @@
 #include <mutex>
 
 #include "core/tasks/session.h"
-#include "tools/http/message.h"
+#include "tools/http/kept_answer.h"
 
 namespace luxrig {
 
@@ -23,12 +23,11 @@ class SceneFile {
   [[nodiscard]] HttpResponse answer(const HttpRequest& request);
 
  private:
-  struct Made;
-  [[nodiscard]] std::shared_ptr<const Made> made_for(const std::shared_ptr<const Session>& session);
+  [[nodiscard]] std::shared_ptr<const KeptAnswer> made_for(const std::shared_ptr<const Session>& session);
   SessionInForce session_;
   std::mutex mutex_;
   std::weak_ptr<const Session> of_;
-  std::shared_ptr<const Made> made_;
+  std::shared_ptr<const KeptAnswer> made_;
 };
 
 }  // namespace luxrig

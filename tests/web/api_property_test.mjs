@@ -1,0 +1,202 @@
+// The daemon and tools/luxrigd/openapi.json agree: the file is valid, and whatever is sent, the daemon answers with a
+// code and a body that the file names, never with 500, and takes nothing that the file's schemas refuse.
+//   node tests/web/api_property_test.mjs --luxrig PROGRAM [--requests 2000] [--seed 1] [--rig tests/rigs/room]
+import assert from 'node:assert/strict';
+import { execFileSync, spawn } from 'node:child_process';
+import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import http from 'node:http';
+import { createRequire } from 'node:module';
+import { tmpdir } from 'node:os';
+import path from 'node:path';
+import { fileURLToPath } from 'node:url';
+import { fc, MISDEEDS, put, requests, Values } from './api_requests.mjs';
+import { eventually } from './browser.mjs';
+
+const require = createRequire(new URL('../../tools/web/package.json', import.meta.url));
+const Ajv = require('ajv/dist/2020').default;
+const SwaggerParser = require('@apidevtools/swagger-parser');
+
+const source = (file) => fileURLToPath(new URL(`../../${file}`, import.meta.url));
+const option = (name, otherwise) => {
+  const at = process.argv.indexOf(name);
+  return at > 0 ? process.argv[at + 1] : otherwise;
+};
+const luxrig = option('--luxrig', source('build/release/bin/luxrig'));
+const rig = source(option('--rig', 'tests/rigs/room'));
+const runs = Number(option('--requests', '2000'));
+const seed = Number(option('--seed', '1'));
+const kWorkers = 6;
+const kReloads = Math.max(2, Math.min(20, runs / 1000)); // each solves the rig again
+
+const file = JSON.parse(readFileSync(source('tools/luxrigd/openapi.json'), 'utf8'));
+await SwaggerParser.validate(structuredClone(file));
+
+const ajv = new Ajv({ strict: false, allErrors: true, validateFormats: false });
+ajv.addSchema(file, 'openapi.json');
+const kept = new Map();
+/** The validator of a schema at this place of the file. */
+function schemaAt(...place) {
+  const pointer = place.map((part) => encodeURIComponent(part.replaceAll('~', '~0').replaceAll('/', '~1'))).join('/');
+  if (!kept.has(pointer)) kept.set(pointer, ajv.compile({ $ref: `openapi.json#/${pointer}` }));
+  return kept.get(pointer);
+}
+const json = 'application/json';
+const operations = Object.entries(file.paths).flatMap(([route, methods]) => Object.entries(methods).map(([method, operation]) =>
+  ({ schema: operation.requestBody?.content[json].schema, operation: { method, path: route, parameters: operation.parameters } })));
+
+const folder = mkdtempSync(path.join(tmpdir(), 'luxrig-api-'));
+const plan = path.join(folder, 'plan.json');
+execFileSync(luxrig, ['solve', rig, '-o', plan, '--max-error', '0.05']);
+const daemon = spawn(luxrig, ['run', rig, '--sim', '--port', '0', '--max-error', '0.05'], { env: { ...process.env, XDG_RUNTIME_DIR: folder } });
+let log = '';
+for (const out of [daemon.stdout, daemon.stderr]) out.on('data', (part) => (log += part));
+const ended = new Promise((resolve) => daemon.once('exit', resolve));
+
+const agent = new http.Agent({ keepAlive: true, maxSockets: 2 * kWorkers });
+/** {code, type, body}; of a stream of events the first. */
+function ask(port, options, body) {
+  return new Promise((resolve, reject) => {
+    const request = http.request({ host: '127.0.0.1', port, agent, ...options }, (response) => {
+      const parts = [];
+      const type = (response.headers['content-type'] ?? '').split(';')[0];
+      const done = () => resolve({ code: response.statusCode, type, etag: response.headers.etag, body: Buffer.concat(parts).toString() });
+      response.on('data', (part) => {
+        parts.push(part);
+        if (type !== 'text/event-stream' || !Buffer.concat(parts).includes('\n\n')) return;
+        done();
+        response.destroy();
+      });
+      response.on('end', done);
+      response.on('error', (error) => reject(error)); // after done() this says nothing
+    });
+    request.on('error', (error) => {
+      // The daemon closes connections that idle; a request that met its end is sent again, as any client would.
+      if (request.reusedSocket && ['ECONNRESET', 'EPIPE'].includes(error.code)) ask(port, options, body).then(resolve, reject);
+      else reject(error);
+    });
+    request.end(body);
+  });
+}
+
+try {
+  const line = /page and status: (\S+)/;
+  await eventually('the daemon has a page', () => line.test(log) || log, 60000);
+  const port = Number(new URL(line.exec(log)[1]).port);
+  const token = readFileSync(path.join(folder, 'luxrig', `${port}.token`), 'utf8').trim();
+  const access = { Authorization: `Bearer ${token}` };
+  const status = async () => JSON.parse((await ask(port, { path: '/api/status', headers: access })).body);
+  await eventually('the light is there', async () => ((await status()).fixtures ?? []).some((f) => f.level > 0.05), 60000);
+  await eventually('the room is drawn', async () => (await ask(port, { path: '/api/room', headers: access })).code === 200, 60000);
+
+  const first = await status();
+  const named = (list) => list.map((one) => one.name);
+  const [fixtures, points, meters] = [named(first.fixtures), named(first.points), named(first.luxmeters)];
+  const values = new Values(file,
+    { fixture: fixtures, fixtures: [...fixtures, '*', `${fixtures[0].slice(0, 2)}*`], points: [...points, '*'],
+      anything: [...fixtures, ...points, '*'], devices: [...fixtures, ...meters] },
+    { Plan: [JSON.parse(readFileSync(plan, 'utf8'))] });
+
+  const seen = new Map(); // "POST /api/level 200" -> how often
+  const taken = new Map(); // "POST /api/level" -> keys of bodies that were taken
+  const known = {}; // values of parameters, from the last answer
+  let reloads = 0;
+  const one = async ({ operation, sent, parameters, misdeed }) => {
+    let { method } = operation;
+    const given = put(operation, parameters, known);
+    let route = given.path;
+    if (route === '/api/reload' && !misdeed && ++reloads > kReloads) return;
+    const { value } = sent;
+    let { body } = sent;
+    const headers = { ...access, ...given.headers };
+    if (body === undefined && misdeed !== undefined && method === 'post') body = '{}';
+    if (body !== undefined) headers['Content-Type'] = json;
+    let owed = MISDEEDS[misdeed];
+    switch (misdeed) {
+      case 'stranger': delete headers.Authorization; break;
+      case 'wrong token': headers.Authorization = `Bearer ${token.slice(1)}0`; break;
+      case 'other host': headers.Host = 'rig.example'; break;
+      case 'other origin': headers.Origin = `http://127.0.0.1:${port + 1}`; break;
+      case 'other site': headers['Sec-Fetch-Site'] = 'cross-site'; break;
+      case 'other method': method = 'put'; break;
+      case 'other path': route = `${operation.path}-`; break;
+      case 'other type':
+        body ??= '{}';
+        headers['Content-Type'] = 'text/plain';
+        break;
+      case 'too long': body = ' '.repeat((file.paths[operation.path][method].requestBody?.['x-max-bytes'] ?? 16384) + 1); break;
+      case 'long headers': headers['X-Long'] = 'x'.repeat(9000); break;
+    }
+    if (misdeed === 'too long') headers['Content-Type'] = json;
+    const open = file.paths[operation.path][operation.method].security.length === 0;
+    if (owed === 401 && open) owed = undefined;
+    if (body !== undefined) headers['Content-Length'] = Buffer.byteLength(body);
+    const what = `${operation.method.toUpperCase()} ${operation.path}`;
+    const answer = await ask(port, { method: method.toUpperCase(), path: route, headers }, body);
+    const told = `${what} (${misdeed ?? 'as it should be'}) ${String(body).slice(0, 600)}\n-> ${answer.code} ${answer.body.slice(0, 600)}`;
+    seen.set(`${what} ${answer.code}`, (seen.get(`${what} ${answer.code}`) ?? 0) + 1);
+
+    assert.notEqual(answer.code, 500, told);
+    if (owed !== undefined) assert.equal(answer.code, owed, told);
+    // A path that does not exist is in no file; its refusal looks like all others.
+    let place = ['paths', operation.path, operation.method, 'responses', String(answer.code)];
+    if (misdeed === 'other path') {
+      place = ['components', 'schemas', 'Refusal'];
+    } else {
+      let response = file.paths[operation.path][operation.method].responses[answer.code];
+      if (response?.$ref) {
+        place = response.$ref.split('/').slice(1);
+        response = file.components.responses[place.at(-1)];
+      }
+      assert.ok(response, `the file does not name this code: ${told}`);
+      if (answer.code === 304) assert.equal(answer.body, '', told);
+      else assert.ok(response.content[answer.type], `the file does not name this type, ${answer.type}: ${told}`);
+      place.push('content', answer.type, 'schema');
+    }
+    if (answer.etag) known['If-None-Match'] = answer.etag;
+    if (answer.type === json) {
+      const validate = schemaAt(...place);
+      assert.ok(validate(JSON.parse(answer.body)), `the file does not name this body: ${told}\n${JSON.stringify(validate.errors)}`);
+      if (operation.path === '/api/status') known.since = JSON.parse(answer.body).version;
+    } else if (answer.type === 'text/event-stream') {
+      const validate = schemaAt('components', 'schemas', 'Status');
+      const event = /^event: status\ndata: (.*)\n\n/.exec(answer.body);
+      assert.ok(event && validate(JSON.parse(event[1])), `no status: ${told}\n${JSON.stringify(validate.errors)}`);
+    }
+    if (misdeed === undefined && sent.body !== undefined) {
+      const allowed = value !== undefined && schemaAt('paths', operation.path, operation.method, 'requestBody', 'content', json, 'schema')(JSON.parse(body));
+      if (!allowed) assert.ok(answer.code === 400 || answer.code === 503 || (answer.code === 413 && body.length > 1024), `taken although the file's schema refuses it: ${told}`);
+    }
+    if (answer.code === 200) taken.set(what, new Set([...(taken.get(what) ?? []), ...Object.keys(value ?? {})]));
+  };
+
+  const memory = () => Number(/VmRSS:\s+(\d+)/.exec(readFileSync(`/proc/${daemon.pid}/status`, 'utf8'))[1]);
+  const before = memory();
+  const begun = Date.now();
+  const each = Math.ceil(runs / kWorkers);
+  await Promise.all([...Array(kWorkers).keys()].map((worker) =>
+    fc.assert(fc.asyncProperty(requests(operations, values), one), { numRuns: each, seed: seed * 1000 + worker, verbose: 0 })));
+  const seconds = (Date.now() - begun) / 1000;
+
+  // The test would say nothing if all were refused: each operation was done, with each key that it takes.
+  for (const { operation, schema } of operations) {
+    const what = `${operation.method.toUpperCase()} ${operation.path}`;
+    if (file.paths[operation.path][operation.method].responses[304]) assert.ok(seen.get(`${what} 304`) > 0, `${what} was never the same`);
+    assert.ok(seen.get(`${what} 200`) > 0, `${what} was never done: ${JSON.stringify([...seen])}`);
+    if (!schema) continue;
+    if (schema.$ref === undefined) assert.ok(seen.get(`${what} 400`) > 0, `${what} was never refused`);
+    for (const form of schema.anyOf ?? [schema])
+      for (const [key, of] of Object.entries(form.properties ?? {}))
+        if (of !== false) assert.ok(taken.get(what).has(key), `${what}: no body with ${key} was taken`);
+  }
+  assert.equal(daemon.exitCode, null, `the daemon has ended: ${log.slice(-2000)}`);
+  const last = await status();
+  assert.ok(schemaAt('components', 'schemas', 'Status')(last), JSON.stringify(last).slice(0, 500));
+  const codes = {};
+  for (const [what, count] of seen) codes[what.split(' ').at(-1)] = (codes[what.split(' ').at(-1)] ?? 0) + count;
+  console.log(`${kWorkers * each} requests in ${seconds.toFixed(0)} s, answers by code ${JSON.stringify(codes)}, memory of the daemon ${(before / 1024).toFixed(0)} -> ${(memory() / 1024).toFixed(0)} MiB, output p99 ${last.output.p99_us} us, max ${last.output.max_us} us`);
+} finally {
+  agent.destroy();
+  daemon.kill('SIGTERM');
+  await ended;
+  rmSync(folder, { recursive: true, force: true });
+}
