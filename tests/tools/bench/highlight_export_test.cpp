@@ -19,7 +19,7 @@ std::string geometry_of(const std::filesystem::path& file) {
   return from == std::string::npos ? std::string() : text.substr(from);
 }
 
-TEST(HighlightExport, WritesTheGeneratedObjectsIncludingTheShippedFrieze) {
+TEST(HighlightExport, WritesTheGeneratedObjectsIncludingThoseThatAreShipped) {
   std::string name = (std::filesystem::temp_directory_path() / "luxrig-export-XXXXXX").string();
   const std::filesystem::path folder = ::mkdtemp(name.data());
   for (const BenchRow& row : export_highlight_objects(folder)) EXPECT_EQ(row.error, 0) << row.case_name;
@@ -34,9 +34,12 @@ TEST(HighlightExport, WritesTheGeneratedObjectsIncludingTheShippedFrieze) {
       *sum_m2 += (b - a).cross(c - a).norm() / 2;
     }
   EXPECT_NEAR(area_m2, made_m2, 1e-3 * made_m2);
-  const std::string shipped = geometry_of(test::source_folder() / "rigs/frieze/objects/frieze.obj");
-  EXPECT_GT(shipped.size(), 100'000u);
-  EXPECT_TRUE(geometry_of(folder / "relief-10mm.obj") == shipped);
+  for (const auto& [file, written] : {std::pair("rigs/frieze/objects/frieze.obj", "relief-10mm.obj"),
+                                      std::pair("rigs/portrait/objects/head.obj", "head-4mm.obj")}) {
+    const std::string shipped = geometry_of(test::source_folder() / file);
+    EXPECT_GT(shipped.size(), 100'000u);
+    EXPECT_TRUE(geometry_of(folder / written) == shipped) << file;
+  }
   std::filesystem::remove_all(folder);
 
   for (const BenchRow& row : export_highlight_objects("/proc/nowhere")) EXPECT_FALSE(row.error == 0) << row.case_name;
