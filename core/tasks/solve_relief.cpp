@@ -14,13 +14,19 @@
 namespace luxrig {
 namespace {
 
-ReliefReasons reasons_of(const Task& task, const ReliefSpec& relief, const AimScore& score) {
+/// share   by which its lights were dimmed in the end
+ReliefReasons reasons_of(const Task& task, const ReliefSpec& relief, const AimScore& score, double share) {
   ReliefReasons reasons;
   reasons.task = task.name;
   reasons.seen = relief.seen;
   reasons.role = relief.role;
   reasons.set_up = relief.set_up;
   reasons.score = score;
+  reasons.score.local_contrast_lx *= share;
+  if (reasons.score.role) {
+    reasons.score.role->wanted_lx *= share;
+    reasons.score.role->spared_lx *= share;
+  }
   return reasons;
 }
 
@@ -40,9 +46,9 @@ Result<ReliefSurroundings> TaskSolver::surroundings(std::vector<bool> sought, co
   return around;
 }
 
-Result<void> TaskSolver::settle_relief(const Task& task, const ReliefSpec& spec, const ReliefSurroundings& around,
-                                       const StudiedObject& object, const AimScore& score, const AimScore* before,
-                                       const AskedOfLight& asked, PlannedTask& planned) {
+Result<double> TaskSolver::settle_relief(const Task& task, const ReliefSpec& spec, const ReliefSurroundings& around,
+                                         const StudiedObject& object, const AimScore& score, const AimScore* before,
+                                         const AskedOfLight& asked, PlannedTask& planned) {
   // A stop ends the search, not the use of its result.
   ComputeOptions to_the_end = options_;
   to_the_end.watch = options_.watch.without_stop();
@@ -81,7 +87,7 @@ Result<void> TaskSolver::settle_relief(const Task& task, const ReliefSpec& spec,
   planned.kind = name_of(task.kind);
   planned.relief = relief;
   why_.assign(rig_.points.size(), "");
-  return {};
+  return share;
 }
 
 Result<void> TaskSolver::aim(const Task& task) {
@@ -119,13 +125,12 @@ Result<void> TaskSolver::aim(const Task& task) {
   if (auto lit = light_anew(look()); !lit) return lit;
 
   PlannedTask planned;
-  if (auto settled =
-          settle_relief(task, task.aim.relief, *around, *object, aimed->score, &aimed->before, aimed->asked, planned);
-      !settled)
-    return settled;
+  const auto share =
+      settle_relief(task, task.aim.relief, *around, *object, aimed->score, &aimed->before, aimed->asked, planned);
+  if (!share) return tl::unexpected(share.error());
   list(planned, 0, own_);
   planned.iterations = static_cast<int>(aimed->tried);
-  ReliefReasons reasons = reasons_of(task, task.aim.relief, aimed->score);
+  ReliefReasons reasons = reasons_of(task, task.aim.relief, aimed->score, *share);
   reasons.before = aimed->before;
   std::vector<LitAlone> lit;
   for (std::size_t k = 0; k < heads.size(); ++k) {
@@ -162,16 +167,15 @@ Result<void> TaskSolver::highlight(const Task& task) {
   const ReliefSurroundings around{
       rig_, session_.scene, *session_.rays, look(), std::move(sought), dark->point_lux, dark->max_watts};
   PlannedTask planned;
-  if (auto settled = settle_relief(task, spec.relief, around, *object, found->score, nullptr, found->asked, planned);
-      !settled)
-    return settled;
+  const auto share = settle_relief(task, spec.relief, around, *object, found->score, nullptr, found->asked, planned);
+  if (!share) return tl::unexpected(share.error());
   list(planned, before, level_.size());
   for (Index j = 0; j < own_; ++j) planned.fixtures.push_back(light_of(j));
   for (std::size_t k = 0; k < found->contrast_lx.size(); ++k)
     planned.numbers.push_back(
         {static_cast<int>(k) + 1, std::numeric_limits<double>::quiet_NaN(), found->contrast_lx[k]});
   planned.iterations = static_cast<int>(found->tried);
-  ReliefReasons reasons = reasons_of(task, spec.relief, found->score);
+  ReliefReasons reasons = reasons_of(task, spec.relief, found->score, *share);
   std::vector<LitAlone> lit;
   for (std::size_t l = 0; l < found->lights.size(); ++l)
     lit.push_back({housing_name(rig_, static_cast<std::size_t>(before) + l * emitters), found->lights[l].level,

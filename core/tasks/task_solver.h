@@ -67,10 +67,10 @@ class TaskSolver {
   /// Light that stays while the sought fixtures (one mark per fixture) are dark. They must be dark when this is called.
   Result<ReliefSurroundings> surroundings(std::vector<bool> sought, const Task& task) const;
   /// Dims the sought fixtures, whose levels and aims are set, by one factor until limits hold for all light, reflected
-  /// light included. Fills `planned`, except for list(). before: none for lights that did not hang.
-  Result<void> settle_relief(const Task& task, const ReliefSpec& spec, const ReliefSurroundings& around,
-                             const StudiedObject& object, const AimScore& score, const AimScore* before,
-                             const AskedOfLight& asked, PlannedTask& planned);
+  /// light included, and returns it. Fills `planned`, except for list(). before: none for lights that did not hang.
+  Result<double> settle_relief(const Task& task, const ReliefSpec& spec, const ReliefSurroundings& around,
+                               const StudiedObject& object, const AimScore& score, const AimScore* before,
+                               const AskedOfLight& asked, PlannedTask& planned);
 
   const Session& session_;
   const ComputeOptions& options_;

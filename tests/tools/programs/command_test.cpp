@@ -51,7 +51,8 @@ TEST(Commands, SolveJsonHasTheContractsKeysAndEvaluateAgreesWithIt) {
 }
 
 TEST(Commands, CheckAcceptsEveryShippedRig) {
-  std::vector<std::string> rigs = {source("rigs/studio/can.toml"), source("rigs/planning/hung.toml")};
+  std::vector<std::string> rigs = {source("rigs/studio/can.toml"), source("rigs/studio/portrait.toml"),
+                                   source("rigs/planning/hung.toml")};
   for (const auto& entry : std::filesystem::directory_iterator(source("rigs")))
     if (std::filesystem::exists(entry.path() / "rig.toml")) rigs.push_back(entry.path().string());
   EXPECT_GE(rigs.size(), 6u);

@@ -138,7 +138,10 @@ int run_render(const RenderOptions& options) {
   all_levels.resize(emitters.size(), 1.0);  // daylight
 
   const auto of_rig = camera_named(rig, options);
-  if (!of_rig) return report(of_rig.error());
+  if (!of_rig) {
+    fmt::print(stderr, "luxrig render: {}\n", of_rig.error().detail);
+    return kExitBadInput;
+  }
   Camera camera = *of_rig ? **of_rig
                           : automatic_camera(rays, rig, loaded->look.joints, options.width_px, options.height_px,
                                              rad_from_deg(options.vertical_fov_deg.value_or(60)));

@@ -1,6 +1,9 @@
 /// aim_heads by what is seen.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "tests/core/highlight/aim/aim_heads_fixture.h"
 #include "tests/core/highlight/seen/seen_fixture.h"
 #include "tests/random.h"
@@ -81,6 +84,46 @@ TEST(HeadAimsSeen, FixedLightFillsShadows) {
   EXPECT_GT(in_the_dark.crushed_share, 0.01);
   EXPECT_GT(in_light.lit_share, in_the_dark.lit_share);
   EXPECT_NEAR(in_light.mean_lx, in_the_dark.mean_lx + 200, 1e-2);
+}
+
+// The second head's power costs more than it could ever bring: at a twentieth of its level, a quarter.
+TEST(HeadAimsSeen, ADarkHeadSaysWhatItWouldChange) {
+  const AimedRelief& relief = aimed_relief();
+  std::vector<HangingHead> heads = {head_at({-1.2, -0.9, 0.8}, 30), head_at({1.2, -0.9, 0.8}, 30)};
+  heads[0].watts = 0;
+  heads[1].watts = 100;
+  AimWishes wishes = wishes_seen(64, 32);
+  wishes.energy_weight = 5;
+  const auto aims = relief.aims(heads, wishes);
+  ASSERT_TRUE(aims) << aims.error().detail;
+  const auto found = aims->solve();
+  ASSERT_TRUE(found);
+  ASSERT_EQ(found->heads[1].setting.level, 0);
+  EXPECT_TRUE(std::isnan(found->gain_if_lit[0]));
+  EXPECT_LT(found->gain_if_lit[1], 0);
+  EXPECT_GT(found->gain_if_lit[1], -0.5);
+  // Without the only light nothing is seen.
+  EXPECT_EQ(found->without[0].seen->lit_share, 0);
+  EXPECT_EQ(found->without[1].objective, found->score.objective);
+}
+
+TEST(HeadAimsSeen, ARolesLuxIsReachedAndNotExceeded) {
+  const AimedRelief& relief = aimed_relief();
+  const std::vector<HangingHead> heads = {head_at({-1.2, -0.9, 0.8}, 30), head_at({1.2, -0.9, 0.8}, 30)};
+  AimWishes wishes = wishes_seen(64, 0);
+  wishes.seen_fixed_lux.assign(wishes.seen->samples().size(), 15);
+  for (std::size_t s = 0; s < wishes.seen->samples().size(); ++s)
+    wishes.role.wanted.push_back(wishes.seen->of_object(s) ? 1 : 0);
+  const auto count = static_cast<float>(std::count(wishes.role.wanted.begin(), wishes.role.wanted.end(), 1.0f));
+  for (float& one : wishes.role.wanted) one /= count;
+  for (const double wanted_lx : {5.0, 20.0}) {
+    wishes.role.wanted_lx = wanted_lx;
+    const auto aims = relief.aims(heads, wishes);
+    ASSERT_TRUE(aims) << aims.error().detail;
+    const auto found = aims->solve();
+    ASSERT_TRUE(found);
+    EXPECT_NEAR(found->score.role->wanted_lx, wanted_lx, 0.01 * wanted_lx);
+  }
 }
 
 TEST(HeadAimsSeen, RefusesWhatDoesNotFit) {
