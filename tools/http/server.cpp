@@ -108,6 +108,8 @@ const char* phrase_of(int status) {
       return "OK";
     case 303:
       return "See Other";
+    case 304:
+      return "Not Modified";
     case 400:
       return "Bad Request";
     case 401:
@@ -327,9 +329,11 @@ class HttpServer::State::Connection : public std::enable_shared_from_this<Connec
   void answer(const HttpResponse& response, bool last) {
     doing_ = Doing::answers;
     free_body();
-    std::string text = fmt::format("HTTP/1.1 {} {}\r\n{}Content-Type: {}\r\nContent-Length: {}\r\nConnection: {}\r\n",
-                                   response.status, phrase_of(response.status), server_.headers, response.content_type,
-                                   response.body.size(), last ? "close" : "keep-alive");
+    std::string text = fmt::format("HTTP/1.1 {} {}\r\n{}Connection: {}\r\n", response.status,
+                                   phrase_of(response.status), server_.headers, last ? "close" : "keep-alive");
+    // A 304 has no body; a length would be that of the file that the client has (RFC 9110, 8.6).
+    if (response.status != 304)
+      text += fmt::format("Content-Type: {}\r\nContent-Length: {}\r\n", response.content_type, response.body.size());
     for (const auto& [name, value] : response.headers) text += name + ": " + value + "\r\n";
     text += "\r\n";
     if (!head_only_) text += response.body;
