@@ -14,6 +14,14 @@
 namespace luxrig {
 namespace {
 
+/// Share of max_object_lx that is left to the tasks that follow: each knows the light before it to less than that, and
+/// light beside a used-up limit would be none.
+constexpr double kLeftForLater = 0.01;
+
+/// Dimmed by a limit to less than this share, lights are not seen as they were judged.
+constexpr double kSeenAsJudged = 0.95;
+
+
 /// share   by which its lights were dimmed in the end
 ReliefReasons reasons_of(const Task& task, const ReliefSpec& relief, const AimScore& score, double share) {
   ReliefReasons reasons;
@@ -54,7 +62,8 @@ Result<double> TaskSolver::settle_relief(const Task& task, const ReliefSpec& spe
   to_the_end.watch = options_.watch.without_stop();
   const auto light = light_on_object(around, object, look(), to_the_end);
   if (!light) return tl::unexpected(light.error());
-  double share = spec.max_lx ? light->share_within(*spec.max_lx) : 1;
+  const bool more_follow = &task != &session_.rig.tasks.back();
+  double share = spec.max_lx ? light->share_within(*spec.max_lx * (1 - (more_follow ? kLeftForLater : 0))) : 1;
   const Eigen::VectorXd lux = lux_of_points();
   for (std::size_t i = 0; i < rig_.points.size(); ++i) {
     const auto row = static_cast<Index>(i);
@@ -77,12 +86,12 @@ Result<double> TaskSolver::settle_relief(const Task& task, const ReliefSpec& spe
     relief.before_coverage = before->coverage;
     relief.before_relative_contrast = before->relative_contrast;
   }
-  if (score.seen) {
+  if (score.seen && share >= kSeenAsJudged) {
     relief.seen = score.seen->objective;
     relief.lit_share = score.seen->lit_share;
     relief.clipped_share = score.seen->burnt_share + score.seen->crushed_share;
   }
-  if (before && before->seen) relief.before_seen = before->seen->objective;
+  if (before && before->seen && relief.seen) relief.before_seen = before->seen->objective;
   planned.name = task.name;
   planned.kind = name_of(task.kind);
   planned.relief = relief;

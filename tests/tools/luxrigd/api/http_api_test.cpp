@@ -65,7 +65,11 @@ class HttpApiTest : public ::testing::Test {
     handlers.status = [] { return std::string("{\"phase\":\"holding\"}"); };
     handlers.room_json = [] { return std::string("{}"); };
     handlers.room_png = [] { return std::string(); };
-    handlers.scene = [](const HttpRequest&) { return HttpResponse{200, "model/gltf-binary", "glTF"}; };
+    handlers.scene = [](const HttpRequest& request) {
+      const HttpHeaders headers = {{"ETag", "\"a\""}};
+      return request.header("if-none-match") == "\"a\"" ? HttpResponse{304, "model/gltf-binary", "", headers}
+                                                        : HttpResponse{200, "model/gltf-binary", "glTF", headers};
+    };
     handlers.blackout = [this](bool on) -> Result<void> {
       blackouts += on ? 1 : 100;
       return {};
@@ -136,6 +140,19 @@ TEST_F(HttpApiTest, AnswersStatusAndBlackout) {
   EXPECT_NE(ask(port, get("/api/status")).find("holding"), std::string::npos);
   EXPECT_NE(ask(port, post("/api/blackout", "{\"on\":true}", kJson)).find(" 200 "), std::string::npos);
   EXPECT_EQ(blackouts, 1);
+}
+
+TEST_F(HttpApiTest, SaysThatTheSceneIsTheSameAndKeepsTheConnection) {
+  const std::string head = "GET /api/scene HTTP/1.1\r\nHost: 127.0.0.1\r\nAuthorization: Bearer " + g_token + "\r\n";
+  const std::string first = ask(port, head + "Connection: close\r\n\r\n");
+  EXPECT_EQ(first.find("HTTP/1.1 200 OK\r\n"), 0u) << first;
+  EXPECT_NE(first.find("Content-Length: 4\r\n"), std::string::npos) << first;
+  const std::string again = ask(port, head + "If-None-Match: \"a\"\r\nConnection: close\r\n\r\n");
+  EXPECT_EQ(again.find("HTTP/1.1 304 Not Modified\r\n"), 0u) << again;
+  EXPECT_EQ(again.find("Content-Length"), std::string::npos) << again;
+  EXPECT_EQ(again.substr(again.size() - 4), "\r\n\r\n") << again;
+  const std::string kept = ask(port, head + "If-None-Match: \"a\"\r\n\r\n", false);
+  EXPECT_NE(kept.find("Connection: keep-alive"), std::string::npos) << kept;
 }
 
 TEST_F(HttpApiTest, RefusesOtherHostsOriginsAndContentTypes) {

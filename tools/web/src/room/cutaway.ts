@@ -5,6 +5,7 @@
 const WALL_M = 0.7;         // what is nearer is the same wall
 const LEAN = 0.7;           // of the four rays beside the normal: the tangent of their angle with it
 const PLACES = 3;           // rays of a face start in so many of its triangles
+export const LEAST_FACE_M2 = 0.01;  // smaller faces hide nothing, and are drawn from both sides
 const MOST_FACES = 20_000;  // beyond this, the smallest are drawn from both sides
 
 /** Whether a ray meets a surface further away than `near_m`. */
@@ -27,42 +28,44 @@ export interface Faces {
 export function facesOf(positions: Float32Array, index: Uint32Array): Faces {
   const count = index.length / 3;
   const faces: Faces = {of: new Uint32Array(count), triangles: [], area_m2: [], normal: []};
-  const known = new Map<string, number>();
+  const known = new Map<number, number>();
   const areas = new Float64Array(count);
+  const cell = (v: number, size: number): number => Math.round(v / size);
   for (let t = 0; t < count; ++t) {
-    const [normal, area] = normalOf(positions, index, t);
+    let [nx, ny, nz, area] = normalOf(positions, index, t);
     areas[t] = area;
-    const [ax, ay, az] = cornerOf(positions, index[3 * t]!);
     // Of opposite normals one stands for both.
-    const sign = normal[0] + 1e-4 * normal[1] + 1e-8 * normal[2] < -1e-5 ||
-            (Math.abs(normal[0]) < 1e-5 && (normal[1] < -1e-5 || (Math.abs(normal[1]) < 1e-5 && normal[2] < 0))) ?
-        -1 :
-        1;
-    const along = sign * (normal[0] * ax + normal[1] * ay + normal[2] * az);
-    const key = `${normal.map((v) => Math.round(sign * v * 24)).join(',')},${Math.round(along / 0.04)}`;
+    if (nx < -1e-5 || (nx < 1e-5 && (ny < -1e-5 || (ny < 1e-5 && nz < 0)))) [nx, ny, nz] = [-nx, -ny, -nz];
+    const first = 3 * index[3 * t]!;
+    const along = nx * positions[first]! + ny * positions[first + 1]! + nz * positions[first + 2]!;
+    // 51 cells on each axis of the normal, 4 cm of the plane's distance: one number up to 2^53.
+    const turned = (cell(nx, 0.04) + 25) * 2601 + (cell(ny, 0.04) + 25) * 51 + cell(nz, 0.04) + 25;
+    const key = (cell(along, 0.04) + 2 ** 30) * 2 ** 18 + turned;
     let face = known.get(key);
     if (face === undefined) {
       face = faces.triangles.length;
       known.set(key, face);
       faces.triangles.push([]);
       faces.area_m2.push(0);
-      faces.normal.push([sign * normal[0], sign * normal[1], sign * normal[2]]);
+      faces.normal.push([nx, ny, nz]);
     }
     faces.of[t] = face;
     faces.area_m2[face]! += area;
     const largest = faces.triangles[face]!;
-    largest.push(t);
-    largest.sort((a, b) => areas[b]! - areas[a]!);
+    let place = largest.length;
+    while (place > 0 && areas[largest[place - 1]!]! < area) --place;
+    if (place < PLACES) largest.splice(place, 0, t);
     if (largest.length > PLACES) largest.pop();
   }
   return faces;
 }
 
 /** The side from which each triangle is drawn. */
-export function sidesOf(positions: Float32Array, index: Uint32Array, meets: Meets): Uint8Array {
-  const faces = facesOf(positions, index);
-  const order = faces.area_m2.map((_, face) => face).sort((a, b) => faces.area_m2[b]! - faces.area_m2[a]!);
-  const of_face = new Int8Array(order.length);  // +1: the room is on the side of the face's normal
+export function sidesOf(positions: Float32Array, index: Uint32Array, faces: Faces, meets: Meets): Uint8Array {
+  const order = [...faces.area_m2.keys()]
+                    .filter((face) => faces.area_m2[face]! >= LEAST_FACE_M2)
+                    .sort((a, b) => faces.area_m2[b]! - faces.area_m2[a]!);
+  const of_face = new Int8Array(faces.area_m2.length);  // +1: the room is on the side of the face's normal
   for (const face of order.slice(0, MOST_FACES)) {
     const normal = faces.normal[face]!;
     const outside = (sign: number): boolean => {
@@ -83,7 +86,7 @@ export function sidesOf(positions: Float32Array, index: Uint32Array, meets: Meet
   for (let t = 0; t < sides.length; ++t) {
     const inside = of_face[faces.of[t]!]!;
     if (inside === 0) continue;
-    const [normal] = normalOf(positions, index, t);
+    const normal = normalOf(positions, index, t);
     const with_face = dot(normal, faces.normal[faces.of[t]!]!) > 0;
     sides[t] = inside > 0 === with_face ? Side.front : Side.back;
   }
@@ -100,14 +103,15 @@ function middleOf(positions: Float32Array, index: Uint32Array, t: number): [numb
   return [0, 1, 2].map((axis) => (a[axis]! + b[axis]! + c[axis]!) / 3) as [number, number, number];
 }
 
-function normalOf(positions: Float32Array, index: Uint32Array, t: number): [[number, number, number], number] {
-  const [a, b, c] =
-      [0, 1, 2].map((i) => cornerOf(positions, index[3 * t + i]!)) as unknown as [number[], number[], number[]];
-  const [u, v] = [0, 1].map((i) => [0, 1, 2].map((axis) => (i ? c : b)[axis]! - a[axis]!)) as [number[], number[]];
-  const n: [number, number, number] =
-      [u[1]! * v[2]! - u[2]! * v[1]!, u[2]! * v[0]! - u[0]! * v[2]!, u[0]! * v[1]! - u[1]! * v[0]!];
-  const length = Math.hypot(...n);
-  return length > 0 ? [[n[0] / length, n[1] / length, n[2] / length], length / 2] : [[0, 0, 1], 0];
+/** Its unit normal, and its area in m². */
+function normalOf(positions: Float32Array, index: Uint32Array, t: number): [number, number, number, number] {
+  const [a, b, c] = [3 * index[3 * t]!, 3 * index[3 * t + 1]!, 3 * index[3 * t + 2]!];
+  const [ax, ay, az] = [positions[a]!, positions[a + 1]!, positions[a + 2]!];
+  const [ux, uy, uz] = [positions[b]! - ax, positions[b + 1]! - ay, positions[b + 2]! - az];
+  const [vx, vy, vz] = [positions[c]! - ax, positions[c + 1]! - ay, positions[c + 2]! - az];
+  const [x, y, z] = [uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx];
+  const length = Math.sqrt(x * x + y * y + z * z);
+  return length > 0 ? [x / length, y / length, z / length, length / 2] : [0, 0, 1, 0];
 }
 
 /** The normal, and four rays that lean from it. */

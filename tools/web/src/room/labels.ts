@@ -12,10 +12,11 @@ export interface Label {
 const LETTER_PX = 7.2;
 const HIGH_PX = 16;
 
-/** The labels that fit, the first ones first. */
-export function fitting(labels: readonly Label[], width: number, height: number, most = 80): Label[] {
+/** The labels that fit, the first ones first. isSeen: asked only of those that would fit, since it takes its time. */
+export function fitting<L extends Label>(
+    labels: readonly L[], width: number, height: number, isSeen: (label: L) => boolean = () => true, most = 80): L[] {
   const taken: {left: number; right: number; top: number; bottom: number}[] = [];
-  const out: Label[] = [];
+  const out: L[] = [];
   for (const label of labels) {
     if (out.length >= most) break;
     const half = (label.text.length * LETTER_PX) / 2 + 3;
@@ -24,6 +25,7 @@ export function fitting(labels: readonly Label[], width: number, height: number,
     if (box.left < 0 || box.right > width || box.top < 0 || box.bottom > height) continue;
     if (taken.some((t) => box.left < t.right && t.left < box.right && box.top < t.bottom && t.top < box.bottom))
       continue;
+    if (!isSeen(label)) continue;
     taken.push(box);
     out.push(label);
   }

@@ -2,7 +2,7 @@
 
 import {BufferAttribute, BufferGeometry, DoubleSide, EdgesGeometry, Ray} from 'three';
 import {MeshBVH, type SerializedBVH} from 'three-mesh-bvh';
-import {type Meets, Side, sidesOf} from './cutaway';
+import {facesOf, LEAST_FACE_M2, type Meets, Side, sidesOf} from './cutaway';
 import {type RoomMaterial, readGlb} from './glb';
 
 /** Triangles of one material that are drawn from one side or from both. */
@@ -24,7 +24,7 @@ export interface MadeRoom {
   triangles: number;
 }
 
-const MOST_EDGES_OF = 150_000;  // triangles
+const MOST_EDGES_OF = 60_000;  // triangles
 
 export function makeRoom(bytes: ArrayBuffer): MadeRoom {
   const {positions, origin, index, material, materials} = readGlb(bytes);
@@ -38,7 +38,8 @@ export function makeRoom(bytes: ArrayBuffer): MadeRoom {
     ray.direction.set(dx!, dy!, dz!);
     return search.raycastFirst(ray, DoubleSide, near) !== null;
   };
-  const sides = sidesOf(positions, index, meets);
+  const faces = facesOf(positions, index);
+  const sides = sidesOf(positions, index, faces, meets);
 
   // By part; a triangle that is cut away is turned to face the room.
   const part = new Uint16Array(sides.length);
@@ -61,11 +62,24 @@ export function makeRoom(bytes: ArrayBuffer): MadeRoom {
   }
 
   geometry.setIndex(new BufferAttribute(index, 1));  // `search` holds for it: the same triangles, some turned round
-  const edges = sides.length <= MOST_EDGES_OF ?
-      new Float32Array(new EdgesGeometry(geometry, 25).getAttribute('position').array) :
-      new Float32Array();
+  const edges = edgesOf(geometry, (t) => faces.area_m2[faces.of[t]!]! >= LEAST_FACE_M2);
   geometry.computeBoundingBox();
   const {min, max} = geometry.boundingBox!;
   const bvh = MeshBVH.serialize(search, {cloneBuffers: false});
   return {positions, origin, min: min.toArray(), max: max.toArray(), parts, edges, bvh, part, triangles: sides.length};
+}
+
+/** Lines where faces meet at an angle. Of a room with very many triangles, only of its `large` faces: the lines of a
+ *  statue would be a black spot. */
+function edgesOf(geometry: BufferGeometry, large: (triangle: number) => boolean): Float32Array {
+  const index = geometry.getIndex()!.array;
+  const count = index.length / 3;
+  const some = new BufferGeometry();
+  some.setAttribute('position', geometry.getAttribute('position'));
+  const kept: number[] = [];
+  for (let t = 0; t < count; ++t)
+    if (count <= MOST_EDGES_OF || large(t)) kept.push(index[3 * t]!, index[3 * t + 1]!, index[3 * t + 2]!);
+  if (kept.length === 0 || kept.length > 3 * MOST_EDGES_OF) return new Float32Array();
+  some.setIndex(kept);
+  return new Float32Array(new EdgesGeometry(some, 25).getAttribute('position').array);
 }

@@ -2,10 +2,11 @@
  *  three. Draws only when something has changed. */
 
 import {Box3, Color, DirectionalLight, HemisphereLight, Ray, Raycaster, Scene, Vector2, Vector3, WebGLRenderer} from 'three';
-import type {Room, Status, Vec3} from '../api';
+import type {Point, Room, Status, Vec3} from '../api';
 import {element, setAttribute, setText} from '../dom';
 import * as format from '../format';
 import {judge} from '../judge';
+import type {Spot} from '../plan_layout';
 import {type Chosen, type Selection} from '../selection';
 import {fixtureTip, placeTip, pointTip, surfaceTip} from '../views/tip';
 import {worksOf} from '../works';
@@ -60,6 +61,9 @@ export class Room3d {
   private scale: LuxScale|undefined;
   private hasBox = false;
   private dirty = true;
+  private news = true;  // as takeNews() takes
+  private texts: {place: Vector3; text: string; kind: Label['kind']; above: number}[] = [];
+  private readonly scratch = new Vector3();
   private scheduled = false;
   private last_s = 0;
   private shown = true;
@@ -102,7 +106,7 @@ export class Room3d {
       event.preventDefault();
       this.onLost();
     });
-    selection.onChange(() => this.change());
+    selection.onChange(() => this.change(true));
     this.listen();
   }
 
@@ -159,7 +163,7 @@ export class Room3d {
         `The room in 3-D: ${status.fixtures.length} fixtures; ${goals.filter((p) => p.verdict === 'met').length} of ${
             goals.length} goals met. ` +
             'Arrow keys turn it, plus and minus zoom, N and P go from point to point, F from fixture to fixture, 0 shows the whole room.');
-    this.change();
+    this.change(true);
   }
 
   setLayer(layer: Layer): void {
@@ -176,8 +180,9 @@ export class Room3d {
     return side;
   }
 
-  private change(): void {
+  private change(news = false): void {
     this.dirty = true;
+    this.news ||= news;
     this.schedule();
   }
 
@@ -202,19 +207,9 @@ export class Room3d {
   }
 
   private draw(): void {
-    const {status, look} = this;
+    const {look} = this;
     const chosen = this.selection.current;
-    if (status) {
-      const marked = new Set<number>();
-      status.fixtures.forEach((f, i) => {
-        if ((chosen?.kind === 'fixture' && chosen.index === i) ||
-            (status.question && status.question.fixture === f.name))
-          marked.add(i);
-      });
-      this.points.show(
-          status.points, this.origin, this.layer, this.scale, chosen?.kind === 'point' ? chosen.index : undefined);
-      this.fixtures.show(status.fixtures, this.origin, marked);
-    }
+    if (this.news) this.takeNews();
     // The light of the picture comes over the viewer's shoulder.
     look.camera.updateMatrixWorld();
     this.lamp.position.setFromMatrixPosition(look.camera.matrixWorld);
@@ -224,12 +219,12 @@ export class Room3d {
     this.lamp.target.position.setFromMatrixPosition(look.camera.matrixWorld).addScaledVector(ahead, 5);
     this.renderer.render(this.scene, look.camera);
     this.showTip(chosen);
-    this.showLabels(this.tip.classList.contains('shown') ? undefined : chosen);  // the card has its name
+    this.showLabels();
   }
 
   /** [px] in the picture; undefined behind the viewer. */
   private onScreen(place: Vector3): {x: number; y: number}|undefined {
-    const seen = place.clone().project(this.look.camera);
+    const seen = this.scratch.copy(place).project(this.look.camera);
     if (!(seen.z > -1 && seen.z < 1)) return undefined;
     return {x: (seen.x * 0.5 + 0.5) * this.root.clientWidth, y: (0.5 - seen.y * 0.5) * this.root.clientHeight};
   }
@@ -294,16 +289,24 @@ export class Room3d {
       this.tip.classList.remove('shown');
   }
 
-  private showLabels(chosen: Chosen): void {
+  /** What depends on the status, the layer and the choice, and not on the camera. */
+  private takeNews(): void {
+    this.news = false;
     const {status} = this;
+    const chosen = this.selection.current;
     if (!status) return;
-    const all: Label[] = [];
-    const [width, height] = [this.root.clientWidth, this.root.clientHeight];
+    const marked = new Set<number>();
+    status.fixtures.forEach((f, i) => {
+      if ((chosen?.kind === 'fixture' && chosen.index === i) || (status.question && status.question.fixture === f.name))
+        marked.add(i);
+    });
+    const chosen_point = chosen?.kind === 'point' ? chosen.index : undefined;
+    this.points.show(status.points, this.origin, this.layer, this.scale, chosen_point);
+    this.fixtures.show(status.fixtures, this.origin, marked);
+
+    this.texts = [];
     const add = (place: Vector3|undefined, text: string, kind: Label['kind'], above = LABEL_ABOVE_PX): void => {
-      const seen = place && this.onScreen(place);
-      if (!place || !seen || seen.x < 0 || seen.y < 0 || seen.x > width || seen.y > height || all.length > 150) return;
-      if (kind !== 'asked' && kind !== 'chosen' && this.isHidden(place, seen)) return;
-      all.push({x: seen.x, y: seen.y - above, text, kind});
+      if (place && text) this.texts.push({place, text, kind, above});
     };
     const asked = status.question?.position;
     if (asked) add(new Vector3(...asked).sub(new Vector3(...this.origin)), 'luxmeter here', 'asked', 0);
@@ -311,28 +314,41 @@ export class Room3d {
       add(this.points.places[chosen.index], status.points[chosen.index]?.name ?? '', 'chosen', 26);
     if (chosen?.kind === 'fixture')
       add(this.fixtures.places[chosen.index], status.fixtures[chosen.index]?.name ?? '', 'chosen', 26);
-    const value = (index: number): string => {
-      const point = status.points[index]!;
-      const lux = this.layer === 'verdict' ? point.measured_lux : layerLux(this.layer, point);
-      if (lux === undefined) return '';
-      return this.layer === 'difference' && lux > 0 ? `+${format.lux(lux)}` :
-          this.layer === 'uncertainty' ? `± ${format.lux(lux)}` :
-                                         format.lux(lux);
-    };
-    const order = status.points.map((_, i) => i)
-                      .sort(
-                          (a, b) => Number(status.points[b]!.measured_lux !== undefined) -
-                              Number(status.points[a]!.measured_lux !== undefined));
-    for (const index of order)
-      if (value(index) && status.points[index]!.position) add(this.points.places[index], value(index), 'lux');
+    // Those with a reading first.
+    for (const measured of [true, false])
+      status.points.forEach((point, index) => {
+        if (point.position && (point.measured_lux !== undefined) === measured)
+          add(this.points.places[index], this.number(point), 'lux');
+      });
     for (const work of worksOf(status.points)) {
       const places = work.points.filter((i) => status.points[i]!.position).map((i) => this.points.places[i]!);
       if (!places.length) continue;
-      const middle = new Box3().setFromPoints(places);
-      add(new Vector3((middle.min.x + middle.max.x) / 2, (middle.min.y + middle.max.y) / 2, middle.max.z), work.name,
-          'work', 36);
+      const {min, max} = new Box3().setFromPoints(places);
+      add(new Vector3((min.x + max.x) / 2, (min.y + max.y) / 2, max.z), work.name, 'work', 36);
     }
-    this.labels.show(fitting(all, width, height));
+  }
+
+  /** What the layer shows of a point, as text. */
+  private number(point: Point): string {
+    const lux = this.layer === 'verdict' ? point.measured_lux : layerLux(this.layer, point);
+    if (lux === undefined) return '';
+    const sign = this.layer === 'difference' && lux > 0 ? '+' : this.layer === 'uncertainty' ? '± ' : '';
+    return sign + format.lux(lux);
+  }
+
+  private showLabels(): void {
+    const has_card = this.tip.classList.contains('shown');  // which has the name
+    const labels: (Label&{
+      place: Vector3;
+      seen_at: Spot
+    })[] = [];
+    for (const {place, text, kind, above} of this.texts) {
+      const seen_at = kind === 'chosen' && has_card ? undefined : this.onScreen(place);
+      if (seen_at) labels.push({x: seen_at.x, y: seen_at.y - above, text, kind, place, seen_at});
+    }
+    const isSeen = ({kind, place, seen_at}: {kind: Label['kind']; place: Vector3; seen_at: Spot}): boolean =>
+        kind === 'asked' || kind === 'chosen' || !this.isHidden(place, seen_at);
+    this.labels.show(fitting(labels, this.root.clientWidth, this.root.clientHeight, isSeen));
   }
 
   private listen(): void {
@@ -438,6 +454,6 @@ export class Room3d {
     this.renderer.setClearColor(new Color().copy(ground).convertSRGBToLinear());
     this.bright = lamp.dark ? 1 : 1.5;
     if (this.status) this.show(this.status, undefined, true);
-    this.change();
+    this.change(true);
   }
 }

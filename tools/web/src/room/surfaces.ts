@@ -1,6 +1,6 @@
 /** The room's surfaces: drawn, and found under the pointer. */
 
-import {BufferAttribute, BufferGeometry, Color, DoubleSide, FrontSide, Group, LineBasicMaterial, LineSegments, Mesh, MeshLambertMaterial, Ray, Vector3,} from 'three';
+import {Box3, BufferAttribute, BufferGeometry, Color, DoubleSide, FrontSide, Group, LineBasicMaterial, LineSegments, Mesh, MeshLambertMaterial, Ray, Sphere, Vector3} from 'three';
 import {MeshBVH} from 'three-mesh-bvh';
 import type {RoomMaterial} from './glb';
 import type {MadeRoom} from './made_room';
@@ -21,9 +21,12 @@ export class Surfaces {
 
   constructor(private readonly room: MadeRoom) {
     const positions = new BufferAttribute(room.positions, 3);
+    // Else three finds it for each part anew, in all vertices: a tenth of a second of a large room.
+    const around = new Box3(new Vector3(...room.min), new Vector3(...room.max)).getBoundingSphere(new Sphere());
     for (const part of room.parts) {
       const geometry = new BufferGeometry();
       geometry.setAttribute('position', positions);
+      geometry.boundingSphere = around;
       geometry.setIndex(new BufferAttribute(part.index, 1));
       const {colour, alpha} = part.material;
       const glass = alpha < 1;
@@ -43,6 +46,7 @@ export class Surfaces {
     if (room.edges.length) {
       const edges = new BufferGeometry();
       edges.setAttribute('position', new BufferAttribute(room.edges, 3));
+      edges.boundingSphere = around;
       this.group.add(new LineSegments(edges, this.lines));
     }
     const whole = new BufferGeometry();
