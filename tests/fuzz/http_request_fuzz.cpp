@@ -25,6 +25,9 @@ luxrig::HttpHandlers checking_handlers() {
     static const auto kept = std::make_shared<const luxrig::KeptAnswer>(luxrig::kept_answer("text/plain", "{}"));
     return kept;
   };
+  handlers.start_job = [](const std::string&) { return luxrig::Result<std::string>("00000000-000001"); };
+  handlers.jobs = [] { return std::vector<luxrig::Job>(); };
+  handlers.job = handlers.cancel_job = [](const std::string&) { return std::optional<luxrig::Job>(); };
   handlers.room_png = [] { return std::string(); };
   handlers.scene = [](const luxrig::HttpRequest&) { return luxrig::HttpResponse{}; };
   handlers.blackout = [](bool) { return luxrig::Result<void>(); };
@@ -91,7 +94,7 @@ int status_of(std::string_view bytes, std::size_t part, const std::vector<luxrig
       if (const auto refusal = luxrig::foreign_request(request, reader.has_body())) return refusal->status;
       (void)request.parameter("open");
       for (const luxrig::HttpRoute& one : routes)
-        if (one.path == request.path && one.method == request.method) route = &one;
+        if (luxrig::path_is_of(request.path, one.path) && one.method == request.method) route = &one;
       if (!route) return luxrig::static_file("/nonexistent", request.path).status;
       reader.accept_body(route->max_body_bytes);
     }

@@ -102,21 +102,26 @@ export const MISDEEDS = {
   'long headers': 431,
 };
 
-const ANSWERED = Symbol('what an answer before had');
+/** A parameter's value: what an answer before had. */
+export const ANSWERED = Symbol('what an answer before had');
 
 /** Values of parameters, in the query or in headers: none, those of an answer before, and rubbish. */
 const parametersOf = (parameters) => fc.record(Object.fromEntries((parameters ?? []).map(({ name, in: where }) =>
-  [name, fc.oneof(fc.constant(undefined), fc.constant(ANSWERED), where === 'header' ? fc.constantFrom('*', '"0"', 'W/"0"', 'x') : fc.string({ unit: 'binary', maxLength: 60 }))])));
+  [name, where === 'path'
+    ? fc.oneof({ weight: 4, arbitrary: fc.constant(ANSWERED) }, fc.constantFrom('00000000-000001', 'x', '%00', '..%2f..%2fstate', '-'.repeat(300)))
+    : fc.oneof(fc.constant(undefined), fc.constant(ANSWERED), where === 'header' ? fc.constantFrom('*', '"0"', 'W/"0"', 'x') : fc.string({ unit: 'binary', maxLength: 60 }))])));
 
 /** The path and headers with these parameters. known: values of answers before, by name. */
 export function put(operation, parameters, known) {
   const headers = {}, query = new URLSearchParams();
+  let path = operation.path;
   for (const { name, in: where } of operation.parameters ?? []) {
     const value = parameters[name] === ANSWERED ? known[name] : parameters[name];
-    if (value !== undefined && where === 'header') headers[name] = value;
+    if (where === 'path') path = path.replace(`{${name}}`, value ?? 'none');
+    else if (value !== undefined && where === 'header') headers[name] = value;
     else if (value !== undefined) query.set(name, value);
   }
-  return { path: operation.path + (query.size ? `?${query}` : ''), headers };
+  return { path: path + (query.size ? `?${query}` : ''), headers };
 }
 
 /** One request to one operation: {operation, sent: {body: text or undefined, value}, parameters, misdeed}. */

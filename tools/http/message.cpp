@@ -87,6 +87,15 @@ std::optional<std::string> HttpRequest::parameter(std::string_view name) const {
   return std::nullopt;
 }
 
+bool path_is_of(std::string_view path, std::string_view route) {
+  const std::size_t brace = route.find('{');
+  if (brace == std::string_view::npos) return path == route;
+  return path.size() > brace && path.substr(0, brace) == route.substr(0, brace) &&
+         path.find('/', brace) == std::string_view::npos;
+}
+
+std::string_view last_part(std::string_view path) { return path.substr(path.rfind('/') + 1); }
+
 HttpResponse http_refusal(int status, const std::string& what) {
   return {status, "application/json",
           nlohmann::json{{"error", what}}.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)};

@@ -30,6 +30,12 @@ struct HttpResponse {
   HttpHeaders headers{};
 };
 
+/// The path is this route's. A route that ends with a name in braces, "/api/jobs/{id}", has all paths with one more part.
+[[nodiscard]] bool path_is_of(std::string_view path, std::string_view route);
+
+/// The last part of a path.
+[[nodiscard]] std::string_view last_part(std::string_view path);
+
 /// {"error": what}
 [[nodiscard]] HttpResponse http_refusal(int status, const std::string& what);
 

@@ -275,9 +275,10 @@ class HttpServer::State::Connection : public std::enable_shared_from_this<Connec
     bool known_path = false;
     route_ = nullptr;
     for (const HttpRoute& route : options.routes) {
-      known_path = known_path || route.path == request.path;
+      const bool here = path_is_of(request.path, route.path);
+      known_path = known_path || here;
       // A stream has no length that HEAD could tell.
-      if (route.path == request.path && route.method == (route.events ? request.method : method)) route_ = &route;
+      if (here && route.method == (route.events ? request.method : method)) route_ = &route;
     }
     events_ = route_ && route_->events;
     const bool page = !known_path && method == "GET" && options.page;

@@ -15,7 +15,7 @@
 namespace luxrig {
 
 struct HttpRoute {
-  std::string method, path;
+  std::string method, path;  ///< path: as path_is_of() reads it
   /// Called on threads of the server.
   std::function<HttpResponse(const HttpRequest&)> handle;
   std::size_t max_body_bytes = 16u << 10;

@@ -44,7 +44,8 @@ Daemon::Daemon(std::shared_ptr<const Session> session, const KeptLight& light, D
       controller_(session->rig, light.model, light.joints),
       journal_(options_.state_folder),
       session_(std::move(session)),
-      version_(version_of(session_->rig, session_->scene)) {}
+      version_(version_of(session_->rig, session_->scene)),
+      jobs_(options_.state_folder ? std::optional(*options_.state_folder / "plans") : std::nullopt) {}
 
 Daemon::~Daemon() { stop(); }
 
@@ -383,6 +384,10 @@ HttpHandlers Daemon::handlers() {
   handlers.answer = [this](const std::string& id, const HandAnswer& answer) {
     return questions_.answer(id, answer, now());
   };
+  handlers.start_job = [this](const std::string& kind) { return start_job(kind); };
+  handlers.jobs = [this] { return jobs_.all(); };
+  handlers.job = [this](const std::string& id) { return jobs_.at(id); };
+  handlers.cancel_job = [this](const std::string& id) { return jobs_.cancel(id); };
   handlers.reload = [this] { return reload(); };
   return handlers;
 }
@@ -465,6 +470,7 @@ void Daemon::stop() {
     auto ended = std::async(std::launch::async, [this] { http_->stop(); });
     while (ended.wait_for(std::chrono::milliseconds(5)) != std::future_status::ready) run_commands(now());
   }
+  jobs_.stop();
   if (contacts_.joinable()) {
     contacts_.request_stop();
     contact_pressed_.release();

@@ -48,8 +48,9 @@ struct DaemonOptions {
   std::function<std::unique_ptr<Driver>(const Rig&, std::size_t bus)> stepped_driver{};
   /// Light model of the session's rig for heads at these joints. Called on the thread that brings the plan.
   std::function<Result<LightModel>(const Session&, const std::vector<Joints>&)> light_model{};
-  /// Solves the tasks of a reloaded rig file. If empty, reload is refused.
-  std::function<Result<Plan>(const Session&)> solve{};
+  /// Solves the tasks of a rig. If empty, reloads and jobs are refused.
+  /// Heeds watch.stop. Called on any thread.
+  std::function<Result<Plan>(const Session&, const Watch&)> solve{};
 };
 
 class Daemon {
@@ -118,6 +119,7 @@ class Daemon {
     if (given.wait_for(Duration{}) != std::future_status::ready) return std::nullopt;
     return given.get();
   }
+  [[nodiscard]] Result<std::string> start_job(const std::string& kind);
   Result<void> identify(const std::string& name, double seconds);
   Result<void> aim(const std::string& name, const Joints& joints, double level, double seconds);
   Result<void> park(const std::vector<std::string>& names);
@@ -207,7 +209,8 @@ class Daemon {
   std::shared_ptr<const PublishedStatus> published_;  ///< null before the first tick
   std::deque<Command> commands_;
 
-  std::jthread drawing_, contacts_;  ///< last: they use the members above
+  Jobs jobs_;  ///< last, with the threads below: they use the members above
+  std::jthread drawing_, contacts_;
 };
 
 }  // namespace luxrig

@@ -106,6 +106,17 @@ Result<void> Daemon::park(const std::vector<std::string>& names) {
   });
 }
 
+// ---- jobs ----
+
+Result<std::string> Daemon::start_job(const std::string& kind) {
+  if (!options_.solve) return refusal("this daemon cannot solve");
+  return jobs_.start(kind, [this, session = session()](const Watch& watch) -> Result<std::string> {
+    const auto plan = options_.solve(*session, watch);
+    if (!plan) return tl::unexpected(plan.error());
+    return to_json(*plan);
+  });
+}
+
 // ---- plans ----
 
 Checked<void> Daemon::apply(const Plan& plan, bool of_rig) {
@@ -513,7 +524,7 @@ Checked<std::string> Daemon::reload() {
   if (auto problems = needs_a_restart(present->rig, session->rig, version.light == version_before.light);
       !problems.empty())
     return tl::unexpected(std::move(problems));
-  auto solved = options_.solve(*session);
+  auto solved = options_.solve(*session, {});
   if (!solved) return tl::unexpected(problem_with(file.c_str(), solved.error(), "mend the rig file"));
 
   // The rig file's goals if they are in force; a person's plan stays, within the new rig's limits.

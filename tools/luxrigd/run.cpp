@@ -309,7 +309,11 @@ int run_rig(const RunArguments& arguments) {
   options.light_model = [looks](const Session& in, const std::vector<Joints>& joints) {
     return looks->model(in, joints);
   };
-  options.solve = [compute, looks](const Session& reread) { return solve_again(reread, compute, *looks); };
+  options.solve = [compute, looks](const Session& reread, const Watch& watch) {
+    ComputeOptions watched = compute;
+    if (watch.stop.stop_possible()) watched.watch = watch;
+    return solve_again(reread, watched, *looks);
+  };
   Daemon daemon(session, std::move(*light), options);
   const auto port = daemon.start();
   if (!port) return report(port.error());

@@ -49,5 +49,16 @@ TEST(JsonBody, IsReadUpToALimitedDepth) {
   EXPECT_EQ(json_body('"' + std::string(100, '[') + "\\\"" + '"').get<std::string>().size(), 101u);
 }
 
+TEST(HttpMessage, ARouteWithANameInBracesHasPathsWithOneMorePart) {
+  EXPECT_TRUE(path_is_of("/api/jobs", "/api/jobs"));
+  EXPECT_FALSE(path_is_of("/api/jobs/", "/api/jobs"));
+  for (const char* path : {"/api/jobs/7", "/api/jobs/{id}", "/api/jobs/.."})
+    EXPECT_TRUE(path_is_of(path, "/api/jobs/{id}")) << path;
+  for (const char* path : {"/api/jobs", "/api/jobs/", "/api/jobs/7/8", "/api/jobs/7/", "/api/job/7", "/", ""})
+    EXPECT_FALSE(path_is_of(path, "/api/jobs/{id}")) << path;
+  EXPECT_EQ(last_part("/api/jobs/7"), "7");
+  EXPECT_EQ(last_part("7"), "7");
+}
+
 }  // namespace
 }  // namespace luxrig

@@ -83,6 +83,28 @@ HttpResponse by_hand(const HttpRequest& request, const char* names_key, const ch
   return done_answer(handler(*names, body[value_key].get<double>(), times), "held");
 }
 
+nlohmann::json job_json(const Job& job) {
+  nlohmann::json out = {{"id", job.id}, {"kind", job.kind}, {"state", name_of(job.state)}};
+  if (!job.stage.empty()) out["stage"] = job.stage;
+  if (!job.doing.empty()) out["doing"] = job.doing;
+  if (job.can_be_taken) out["can_be_taken"] = true;
+  if (!job.why.empty()) out["why"] = job.why;
+  out["has_plan"] = !job.plan_json.empty();
+  return out;
+}
+
+/// With its plan.
+HttpResponse job_answer(const std::optional<Job>& job) {
+  if (!job) return http_refusal(404, "there is no such job, or it is so old that it was forgotten");
+  nlohmann::json out = job_json(*job);
+  if (!job->plan_json.empty()) {
+    auto plan = nlohmann::json::parse(job->plan_json, nullptr, false);
+    if (!plan.is_object()) return http_refusal(404, "the plan of this job is damaged on disk");
+    out["plan"] = std::move(plan);
+  }
+  return dumped_answer(out);
+}
+
 }  // namespace
 
 namespace answer_to {
@@ -217,6 +239,8 @@ HttpResponse question(Handlers handlers, Request request) {
     handlers.withdraw_question(*id);
     return dumped_answer({{"withdrawn", true}});
   }
+  if (body.contains("withdrawn") && !body["withdrawn"].is_boolean())
+    return http_refusal(400, "\"withdrawn\" has to be true or false");
   const auto question = question_from_json(body);
   if (!question) return http_refusal(400, question.error().detail);
   const double seconds = body.contains("for_s") && body["for_s"].is_number() ? body["for_s"].get<double>() : 0;
@@ -243,6 +267,29 @@ HttpResponse rig(Handlers handlers, Request request) {
 }
 
 HttpResponse scene(Handlers handlers, Request request) { return handlers.scene(request); }
+
+HttpResponse start_job(Handlers handlers, Request request) {
+  const auto body = json_body(request.body);
+  if (!body.is_object() || !body.contains("kind") || body["kind"] != "solve")
+    return http_refusal(400, "send {\"kind\": \"solve\"}");
+  const auto id = handlers.start_job("solve");
+  if (!id) return http_refusal(409, id.error().detail);
+  return dumped_answer({{"id", *id}});
+}
+
+HttpResponse jobs(Handlers handlers, Request) {
+  nlohmann::json all = nlohmann::json::array();
+  for (const Job& job : handlers.jobs()) all.push_back(job_json(job));
+  return dumped_answer(all);
+}
+
+HttpResponse job(Handlers handlers, Request request) {
+  return job_answer(handlers.job(std::string(last_part(request.path))));
+}
+
+HttpResponse cancel_job(Handlers handlers, Request request) {
+  return job_answer(handlers.cancel_job(std::string(last_part(request.path))));
+}
 
 HttpResponse room(Handlers handlers, Request) {
   std::string room = handlers.room_json();

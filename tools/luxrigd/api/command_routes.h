@@ -14,6 +14,7 @@
 #include "tools/http/kept_answer.h"
 #include "tools/http/server.h"
 #include "tools/luxrigd/hand_question.h"
+#include "tools/luxrigd/jobs.h"
 
 namespace luxrig {
 
@@ -55,6 +56,11 @@ struct HttpHandlers {
   /// Asks no longer.
   std::function<void(const std::string& id)> withdraw_question;
   std::function<Result<void>(const std::string& id, const HandAnswer& answer)> answer;
+  /// Starts a job of this kind; its id.
+  std::function<Result<std::string>(const std::string& kind)> start_job;
+  std::function<std::vector<Job>()> jobs;
+  /// nullopt: there is none of this id.
+  std::function<std::optional<Job>(const std::string&id)> job, cancel_job;
   /// Reloads the rig file, whole or not at all.
   std::function<Checked<std::string>()> reload;
 };
@@ -88,6 +94,10 @@ using Request = const HttpRequest&;
 [[nodiscard]] HttpResponse bypass(Handlers handlers, Request request);
 [[nodiscard]] HttpResponse question(Handlers handlers, Request request);
 [[nodiscard]] HttpResponse answer(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse start_job(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse jobs(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse job(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse cancel_job(Handlers handlers, Request request);
 [[nodiscard]] HttpResponse reload(Handlers handlers, Request request);
 
 }  // namespace answer_to

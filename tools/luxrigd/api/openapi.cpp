@@ -58,6 +58,12 @@ Schema operation(const ApiRoute& route) {
                 {"security", Schema::array()}};
   if (route.role != Role::anybody)
     for (const char* scheme : {"token", "cookie"}) out["security"].push_back({{scheme, Schema::array()}});
+  if (const std::string path = route.path; path.back() == '}') {
+    const std::size_t brace = path.find('{');
+    out["parameters"].push_back(
+        parameter("path", path.substr(brace + 1, path.size() - brace - 2).c_str(), "of the job"));
+    out["parameters"].back()["required"] = true;
+  }
   for (const ApiParameter& one : route.parameters) out["parameters"].push_back(parameter("query", one.name, one.what));
   if (route.kept)
     out["parameters"].push_back(parameter("header", "If-None-Match", "ETag of the answer that the client has"));

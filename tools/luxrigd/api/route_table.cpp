@@ -77,6 +77,8 @@ ApiAnswer failed() { return {500, "the disk or a bus has not taken it: the text 
 
 ApiAnswer being_drawn() { return {503, "the room is being drawn: ask again in a second", ref("Refusal")}; }
 
+ApiAnswer no_job() { return {404, "there is no such job", ref("Refusal")}; }
+
 /// With an ETag.
 ApiRoute kept(ApiRoute route) {
   route.answers.push_back({304, "the client has it: If-None-Match", nullptr, nullptr});
@@ -215,6 +217,34 @@ std::vector<ApiRoute> made_table() {
         {503, "others are sending files just now: try again", ref("Refusal")}},
        answer_to::apply,
        kMaxPlanBytes},
+      {"POST",
+       "/api/jobs",
+       operate,
+       "starts a job: solve finds a plan for what the rig file asks, and does not apply it",
+       request({{"kind", one_of_texts({"solve"})}}),
+       {ok(answer({{"id", text()}}), "it waits or runs"), refused(), {409, "too many jobs wait", ref("Refusal")}},
+       answer_to::start_job},
+      {"GET",
+       "/api/jobs",
+       look,
+       "the jobs of this daemon, the newest last",
+       none,
+       {ok(list(ref("Job")), "a list of jobs")},
+       answer_to::jobs},
+      {"GET",
+       "/api/jobs/{id}",
+       look,
+       "a job with its result; one of an earlier daemon is lost, but for its plan",
+       none,
+       {ok(ref("JobWithPlan"), "the job"), no_job()},
+       answer_to::job},
+      {"DELETE",
+       "/api/jobs/{id}",
+       operate,
+       "cancels a job; its best so far is its result, if it has one",
+       none,
+       {ok(ref("JobWithPlan"), "the job, which ends soon"), no_job()},
+       answer_to::cancel_job},
       {"POST",
        "/api/level",
        operate,

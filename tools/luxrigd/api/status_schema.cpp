@@ -236,6 +236,17 @@ Keys room() {
           maybe("plan", said(plan, "the room from above; image x is world x, up is world +y"))};
 }
 
+Keys job() {
+  return {{"id", text()},
+          {"kind", one_of_texts({"solve"})},
+          {"state", one_of_texts({"waits", "runs", "done", "failed", "cancelled", "lost"})},
+          {"has_plan", yes_or_no()},
+          maybe("stage", text("what it works on")),
+          maybe("doing", text("how far that is, or its best result so far, for a person")),
+          maybe("can_be_taken", yes()),
+          maybe("why", text("it failed or is lost, or its plan is not on disk"))};
+}
+
 Schema rig() {
   const Schema bus = answer({{"name", text()}, {"driver", text()}, maybe("address", text())});
   const Schema luminaire = answer({{"name", text()},
@@ -272,6 +283,8 @@ Schema status_schemas() {
           {"Life", one_of_texts({"configured", "active", "faulted"})},
           {"Rig", rig()},
           {"Room", answer(room())},
+          {"Job", answer(job())},
+          {"JobWithPlan", answer(both(job(), {maybe("plan", ref("Plan"))}))},
           {"Universe",
            answer({{"bus", text()}, {"universe", count()}, {"silent", yes_or_no()}, {"slots", list(count(0, 255))}})}};
 }
