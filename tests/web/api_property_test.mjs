@@ -125,7 +125,7 @@ try {
       case 'other method': method = 'put'; break;
       case 'other path': route = `/api/none${route.slice(4)}`; break;
       case 'other type':
-        body ??= '{}';
+        if (!body) body = '{}'; // a body of no bytes has no type
         headers['Content-Type'] = 'text/plain';
         break;
       case 'too long': body = ' '.repeat((file.paths[operation.path][method].requestBody?.['x-max-bytes'] ?? 16384) + 1); break;

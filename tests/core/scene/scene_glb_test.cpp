@@ -12,14 +12,14 @@
 namespace luxrig {
 namespace {
 
-class NothingBeside final : public FilesBeside {
+class GlbNothingBeside final : public FilesBeside {
  public:
   [[nodiscard]] std::optional<std::string> read(const std::string&, std::size_t) const override { return {}; }
 };
 
 /// As load_mesh() reads it: by world, from the bytes.
 PlacedMesh read_again(const std::string& glb) {
-  auto mesh = read_mesh(glb, "glb", "scene.glb", NothingBeside{});
+  auto mesh = read_mesh(glb, "glb", "scene.glb", GlbNothingBeside{});
   EXPECT_TRUE(mesh) << (mesh ? "" : mesh.error()[0].text());
   Eigen::Affine3d world_from_mesh = Eigen::Affine3d::Identity();
   world_from_mesh.linear() = Eigen::AngleAxisd(kPi / 2, Vec3::UnitX()).toRotationMatrix();
