@@ -19,8 +19,9 @@ struct Point {
   std::optional<double> goal_lx;      ///< none = only reported (and limited)
   std::optional<Vec3> goal_rgb{};     ///< colour of that goal, linear Rec. 709 with a luminance of 1; none = any
   double weight = 1;
-  std::optional<double> max_lx;            ///< hard limit
-  std::optional<double> goal_tolerance{};  ///< none = that of ControlSpec
+  std::optional<double> max_lx;               ///< hard limit
+  std::optional<double> goal_tolerance{};     ///< none = that of ControlSpec
+  std::optional<std::size_t> surface_goal{};  ///< index in the rig; none = a [[point]]
   FilePosition in_file;
 };
 
@@ -31,6 +32,8 @@ struct SurfaceGoalSpec {
   std::filesystem::path strokes_file;  ///< core/goals/painting_file.h
   std::optional<double> max_lx;        ///< hard limit at its points
   double weight = 1;
+  std::optional<Vec3> goal_rgb{};                 ///< colour of its light, as Point::goal_rgb; none = any
+  std::optional<double> uniformity{};             ///< lowest over mean illuminance that is wanted (EN 12464-1: U0)
   std::optional<double> goal_tolerance{};         ///< of its points; none = ControlSpec::goal_tolerance
   double patch_m = 0.1;                           ///< size of the patches that strokes cover
   double min_spacing_m = 0.2, max_spacing_m = 1;  ///< of its points: where it has most detail, and where it has none
@@ -230,7 +233,11 @@ struct Daylight {
 };
 
 struct DaemonSpec {
-  int http_port = 9620;  ///< on loopback
+  int http_port = 9620;
+  std::string listen = "127.0.0.1";  ///< address; any but loopback needs accounts
+  std::filesystem::path accounts_file;
+  std::filesystem::path tls_certificate_file, tls_key_file;  ///< PEM; both or none
+  bool behind_proxy = false;  ///< the client's address and scheme are those that the proxy states
   bool park_at_end = false;
   FilePosition in_file;
 };

@@ -21,8 +21,9 @@ namespace luxrig {
 struct Rig {
   std::filesystem::path file;  ///< as opened; for problems, and for paths relative to it
   std::string name;
-  std::string calibrated;     ///< when the calibration that is applied over the file was made; empty = none is
-  std::string calibrated_on;  ///< the simulated rig that it was measured on; empty = the real one
+  std::string calibrated;           ///< when the calibration that is applied over the file was made; empty = none is
+  double calibrated_hours_ago = 0;  ///< from then until the rig was opened
+  std::string calibrated_on;        ///< the simulated rig that it was measured on; empty = the real one
   std::vector<KnownLight> known_lights;  ///< by that calibration; in place of what is traced
   std::uint64_t known_lights_of = 0;     ///< RigVersion::light of the rig that they are of, without them
   SceneSpec scene;

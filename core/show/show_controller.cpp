@@ -450,6 +450,7 @@ void ShowController::step(Time now) {
   State& state = *state_;
   if (now < state.last) return;
   state.last = now;
+  if (!state.rig_since) state.rig_since = now;
   state.release_what_is_over(now);
   state.step_desks(now);
   state.take_sample(now);

@@ -3,6 +3,10 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <ctime>
+#include <iomanip>
+#include <limits>
+#include <sstream>
 #include <system_error>
 
 #include "core/estimation/calibration.h"
@@ -22,6 +26,16 @@ Checked<Rig> stated_rig(const std::filesystem::path& path) {
   return rig;
 }
 
+/// Since an instant in UTC, as Calibration::made; infinite if it is none, or is yet to come.
+double hours_since(const std::string& instant) {
+  std::tm parts{};
+  std::istringstream text(instant);
+  text >> std::get_time(&parts, "%Y-%m-%dT%H:%M:%SZ");
+  const std::time_t then = text.fail() ? -1 : timegm(&parts), now = std::time(nullptr);
+  if (then < 0 || then > now) return std::numeric_limits<double>::infinity();
+  return std::difftime(now, then) / 3600;
+}
+
 }  // namespace
 
 Checked<Rig> with_calibration(Rig rig) {
@@ -32,7 +46,9 @@ Checked<Rig> with_calibration(Rig rig) {
   if (!text) return tl::unexpected(text.error());
   const auto calibration = calibration_from_json(*text, file.string());
   if (!calibration) return tl::unexpected(calibration.error());
-  return calibrated(std::move(rig), *calibration, file.string());
+  auto found = calibrated(std::move(rig), *calibration, file.string());
+  if (found) found->calibrated_hours_ago = hours_since(calibration->made);
+  return found;
 }
 
 void tell_calibration(const Rig& rig) {

@@ -15,6 +15,7 @@ void ShowController::State::exchange_rig(Time now, const Rig& other, const Light
   hands.exchange_points(rig.points, other.points);
   const std::vector<double> present = present_levels(now);
   rig = other;
+  rig_since = now;
   points_in_force = rig.points;
   take_points(hung_look(rig));
   progress.forget_aims();

@@ -62,6 +62,7 @@ struct ShowController::State {
 
   Phase phase = Phase::idle;
   Time phase_since{};
+  std::optional<Time> rig_since;           ///< when this rig was first used
   Time last{};                             ///< the latest instant given to any call
   Time healthy_since{};                    ///< meaningful while not failing
   bool failing = true;                     ///< the light depends on something lost; true until the first step
@@ -226,15 +227,18 @@ struct ShowController::State {
   [[nodiscard]] bool any_lamp_lost() const;
   /// A meter would show it if this lamp were out.
   [[nodiscard]] bool seen_by_a_meter(std::size_t fixture, std::span<const double> level) const;
-  /// A lamp without which the point would miss its goal, and whose failure neither its device nor a meter would show.
-  [[nodiscard]] std::optional<std::size_t> unseen_lamp_for(std::size_t point, std::span<const double> level,
+  /// A calibration saw this lamp burn, not long ago.
+  [[nodiscard]] bool calibration_saw(std::size_t fixture, Time now) const;
+  /// A lamp without which the point would miss its goal, that no calibration has seen lately, and whose failure neither
+  /// its device nor a meter would show.
+  [[nodiscard]] std::optional<std::size_t> unseen_lamp_for(std::size_t point, std::span<const double> level, Time now,
                                                            const LuxEstimate& light, double allowed_lx) const;
   /// Levels believed to be out. Where a desk drives lamps itself: the values it sends. For a lamp that does not answer:
   /// the last level it took.
   [[nodiscard]] std::vector<double> levels_out(Time now) const;
   /// Its meter's newest reading is not that of the sample, by more than noise.
   [[nodiscard]] bool reads_otherwise_now(std::size_t point, const PointStatus& status) const;
-  void judge_goal(std::size_t point, std::span<const double> level, PointStatus& status) const;
+  void judge_goal(std::size_t point, std::span<const double> level, Time now, PointStatus& status) const;
   void judge_limit(std::size_t point, std::span<const double> level, Time now, PointStatus& status) const;
   void remember_levels(Time now);
   [[nodiscard]] std::string detail(Time now, const VerdictCounts& goals) const;

@@ -13,6 +13,10 @@ namespace {
 /// A lamp's light at a meter is known only as well as the model. So it must exceed the meter's smallest jump by this
 /// factor.
 constexpr double kSurelySeen = 1.5;
+/// A calibration that lit a lamp alone and knew its output better than this, as a share, saw it burn.
+constexpr double kSawItBurn = 0.3;
+/// For so long a lamp is believed to burn on. Of lamps that last 50,000 h, one in a hundred goes out in this time.
+constexpr double kBurnsOn_h = 500;
 
 /// Why the light is not the plan's; empty if it is.
 const char* why_not_the_plan(Phase phase, bool blackout) {
@@ -80,21 +84,27 @@ double ShowController::State::in_doubt_for_lost_lamps_lx(std::size_t point, std:
 }
 
 bool ShowController::State::seen_by_a_meter(std::size_t fixture, std::span<const double> level) const {
-  std::vector<std::uint8_t> chosen(rig.fixtures.size(), 0);
-  chosen[fixture] = 1;
   for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) {
     if (!readings.measured()[i] || health.meter_lost(i)) continue;
     const Prediction there = predicted.at_meter(estimator, i, level);
-    const double its_lx = level[fixture] * estimator.share_at_meter(i, chosen, level) * there.lux;
+    const double its_lx = level[fixture] * estimator.lux_per_level_at_meter(i, fixture).lux;
     if (its_lx >= kSurelySeen * GainEstimator::smallest_jump_lx(there)) return true;
   }
   return false;
 }
 
+bool ShowController::State::calibration_saw(std::size_t fixture, Time now) const {
+  const std::optional<LightError>& known_to = rig.fixtures[fixture].known_to;
+  if (!known_to || !(known_to->output < kSawItBurn)) return false;
+  const double since_opened_s = rig_since ? to_seconds(now - *rig_since) : 0;
+  return rig.calibrated_hours_ago + since_opened_s / 3600 < kBurnsOn_h;
+}
+
 std::optional<std::size_t> ShowController::State::unseen_lamp_for(std::size_t point, std::span<const double> level,
-                                                                  const LuxEstimate& light, double allowed_lx) const {
+                                                                  Time now, const LuxEstimate& light,
+                                                                  double allowed_lx) const {
   for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
-    if (level[f] <= 0 || tells_of_lamp[f] != 0) continue;
+    if (level[f] <= 0 || tells_of_lamp[f] != 0 || calibration_saw(f, now)) continue;
     const LuxEstimate without{light.lux - level[f] * estimator.lux_per_level(point, f), light.half_width_lx};
     if (verdict_of(without, *points_in_force[point].goal_lx, allowed_lx) != Verdict::met && !seen_by_a_meter(f, level))
       return f;
@@ -139,7 +149,7 @@ PointStatus ShowController::State::point_status(std::size_t p, std::span<const d
   // It is not known which of them is right: the light may be higher or lower by this much.
   const ScaleWatch::Doubt doubt = scale.doubt_at(meter_at(p), readings.measured());
   status.light.half_width_lx += status.light.lux * (std::exp(std::abs(doubt.log_share)) - 1);
-  judge_goal(p, level, status);
+  judge_goal(p, level, now, status);
   judge_limit(p, level, now, status);
   return status;
 }
@@ -150,7 +160,8 @@ bool ShowController::State::reads_otherwise_now(std::size_t point, const PointSt
          std::abs(heard->lux - *status.measured_lx) > GainEstimator::smallest_jump_lx({*status.measured_lx, 0});
 }
 
-void ShowController::State::judge_goal(std::size_t p, std::span<const double> level, PointStatus& status) const {
+void ShowController::State::judge_goal(std::size_t p, std::span<const double> level, Time now,
+                                       PointStatus& status) const {
   if (!status.goal_lx) return;
   double largest_goal_lx = *status.goal_lx;
   if (largest_goal_lx == 0)
@@ -165,15 +176,16 @@ void ShowController::State::judge_goal(std::size_t p, std::span<const double> le
   if (changing) status.verdict = Verdict::unknown;
   std::optional<std::size_t> unseen;
   if (!status.measured_lx && status.verdict == Verdict::met)
-    unseen = unseen_lamp_for(p, level, status.light, allowed_lx);
+    unseen = unseen_lamp_for(p, level, now, status.light, allowed_lx);
   if (unseen) status.verdict = Verdict::unknown;
   const std::string state = why_not_the_plan(phase, program.blackout);
   std::string settles;
   if (const ScaleWatch::Doubt doubt = scale.doubt_at(meter_at(p), readings.measured()); !doubt.reason.empty()) {
     settles = doubt.reason;
   } else if (unseen) {
-    settles = fmt::format("nobody sees whether fixture \"{}\" burns; a luxmeter in its light would settle it",
-                          rig.fixtures[*unseen].name);
+    settles = fmt::format(
+        "nobody sees whether fixture \"{}\" burns; a luxmeter in its light would settle it, or a calibration",
+        rig.fixtures[*unseen].name);
   } else if (changing) {
     settles = fmt::format("luxmeter \"{}\" reads {:.4g} lx by now; its next sample will settle it",
                           rig.luxmeters[*meter_at(p)].name, readings.heard()[*meter_at(p)]->lux);
