@@ -86,6 +86,14 @@ enum class SetUp { none, rembrandt, loop, split, broad, raking, copy };
   return kNames[static_cast<int>(set_up)];
 }
 
+/// What a person wants to see of an object, as factors on the usual weights of SeenWishes
+/// (core/highlight/seen/seen_contrast.h); none of them below 0.
+struct SeenWeights {
+  double fine = 1, form = 1, lit = 1, edge = 1;
+  double even = 0, shadows = 0;  ///< over the weight of `lit`
+  double max_clipped = 0.02;     ///< share of what is seen that may be burnt or crushed
+};
+
 /// An object whose relief is to be brought out.
 struct ReliefSpec {
   std::size_t object = 0;               ///< index in SceneSpec::objects; a mesh
@@ -99,6 +107,7 @@ struct ReliefSpec {
   LightRole role = LightRole::any;
   std::optional<double> ratio{};  ///< of the key's illuminance to this role's, or, of the key, to all other light
   SetUp set_up = SetUp::none;     ///< as seen by the camera
+  SeenWeights weights{};          ///< objective "seen"
 };
 
 /// kind == aim: aims and levels of heads that are already hung.

@@ -74,8 +74,12 @@ std::string reached_text(const ReliefReasons& reasons) {
       if (most) text += fmt::format("; most changed is {}, by {:+.0f} %", most->words, 100 * change);
     }
   } else {
-    text = fmt::format(
-        "Recessed places differ from what is beside them by {:.1f} lx, and {} of the features have a "
+    text = reasons.dimmed_to
+               ? fmt::format("A limit dims these lights to {} of the levels that they were judged at: recessed",
+                             percent_text(*reasons.dimmed_to))
+               : "Recessed";
+    text += fmt::format(
+        " places differ from what is beside them by {:.1f} lx, and {} of the features have a "
         "shadow's edge",
         score.local_contrast_lx, percent_text(score.coverage));
     if (reasons.before && reasons.before->mean_lx > 0)

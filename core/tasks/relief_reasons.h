@@ -23,8 +23,9 @@ struct ReliefReasons {
   bool seen = false;
   LightRole role = LightRole::any;
   SetUp set_up = SetUp::none;
-  AimScore score;
-  std::optional<AimScore> before;  ///< kind "aim"
+  AimScore score;                   ///< without `seen` if dimmed_to says so
+  std::optional<double> dimmed_to;  ///< a limit dims its lights to this share of the levels that they were judged at
+  std::optional<AimScore> before;   ///< kind "aim"
   std::vector<LightService> lights;
   std::size_t dark = 0;  ///< lights that were sought, and stay dark
   /// Of those: the most that the objective would change by if one were lit; none = the limits or the set-up leave them

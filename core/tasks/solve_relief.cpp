@@ -21,7 +21,6 @@ constexpr double kLeftForLater = 0.01;
 /// Dimmed by a limit to less than this share, lights are not seen as they were judged.
 constexpr double kSeenAsJudged = 0.95;
 
-
 /// share   by which its lights were dimmed in the end
 ReliefReasons reasons_of(const Task& task, const ReliefSpec& relief, const AimScore& score, double share) {
   ReliefReasons reasons;
@@ -30,6 +29,10 @@ ReliefReasons reasons_of(const Task& task, const ReliefSpec& relief, const AimSc
   reasons.role = relief.role;
   reasons.set_up = relief.set_up;
   reasons.score = score;
+  if (share < kSeenAsJudged) {
+    reasons.dimmed_to = share;
+    reasons.score.seen.reset();
+  }
   reasons.score.local_contrast_lx *= share;
   if (reasons.score.role) {
     reasons.score.role->wanted_lx *= share;

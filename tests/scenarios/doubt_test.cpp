@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "tests/scenarios/closed_loop.h"
 #include "tests/scenarios/doubt_fixture.h"
@@ -204,6 +205,68 @@ TEST(ALampThatNoMeterSees, IsNotTrusted) {
   }
   EXPECT_EQ(met_by_unseen, 0);
   EXPECT_GT(met, 0) << "what meters see is still claimed";
+}
+
+/// Points of spot-7, which no meter sees, that count as met once the light stands.
+int met_by_spot_7(double calibrated_hours_ago, double then_h) {
+  int met = 0;
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    Hall hall = make_hall(seed);
+    hall.rig.control.goal_tolerance = 0.3;
+    hall.rig.calibrated_hours_ago = calibrated_hours_ago;
+    hall.rig.fixtures[6].known_to = LightError{0.02, 0.02, 0.02};
+    ClosedLoop loop(hall, seeded(seed));
+    loop.apply();
+    EXPECT_TRUE(loop.run_until(Phase::holding, 40)) << loop.describe();
+    loop.run(3);
+    const ShowStatus status = loop.show.status(loop.now + from_seconds(3600 * then_h));
+    for (std::size_t p = 6; p < status.points.size(); ++p)
+      met += status.points[p].met() &&
+             loop.hall.model.point_lux_per_level(static_cast<Eigen::Index>(p), 6) * loop.levels()[6] >
+                 0.6 * *status.points[p].goal_lx;
+  }
+  return met;
+}
+
+TEST(ALampThatNoMeterSees, IsBelievedToBurnForFiveHundredHoursAfterACalibrationSawIt) {
+  const int fresh = met_by_spot_7(0, 0);
+  EXPECT_GT(fresh, 0);
+  EXPECT_EQ(met_by_spot_7(450, 0), fresh);
+  EXPECT_EQ(met_by_spot_7(450, 49), fresh);
+  EXPECT_EQ(met_by_spot_7(450, 51), 0);
+  EXPECT_EQ(met_by_spot_7(501, 0), 0);
+  EXPECT_EQ(met_by_spot_7(std::numeric_limits<double>::infinity(), 0), 0) << "its date is not known";
+}
+
+TEST(ALampAtALowLevel, IsSeenByTheMeterThatHasMostOfItsLightFromIt) {
+  int named = 0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    Hall hall = make_hall(seed);
+    hall.rig.control.goal_tolerance = 0.3;
+    for (Point& point : hall.rig.points) *point.goal_lx *= 0.1;
+    for (double& level : hall.plan) level *= 0.1;
+    ClosedLoop loop(hall, seeded(seed));
+    loop.apply();
+    ASSERT_TRUE(loop.run_until(Phase::holding, 40)) << loop.describe();
+    loop.run(3);
+    const std::vector<double> level = loop.levels();
+    for (std::size_t f = 0; f < level.size(); ++f) {
+      double largest_share = 0;
+      for (Eigen::Index m = 0; m < hall.model.meter_lux_per_level.rows(); ++m) {
+        double all_lx = 0;
+        for (std::size_t j = 0; j < level.size(); ++j)
+          all_lx += level[j] * hall.model.meter_lux_per_level(m, static_cast<Eigen::Index>(j));
+        largest_share = std::max(largest_share,
+                                 level[f] * hall.model.meter_lux_per_level(m, static_cast<Eigen::Index>(f)) / all_lx);
+      }
+      if (largest_share < 0.5) continue;
+      EXPECT_LT(level[f], 0.2) << "a low level";
+      for (const PointStatus& point : loop.status().points)
+        named += point.reason.find(fmt::format("whether fixture \"{}\" burns", hall.rig.fixtures[f].name)) !=
+                 std::string::npos;
+    }
+  }
+  EXPECT_EQ(named, 0);
 }
 
 TEST(ALampWhoseDeviceSaysThatItHasBurntOut, LeavesItsPointsUnknownUntilItIsRepaired) {

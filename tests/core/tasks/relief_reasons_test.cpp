@@ -51,6 +51,18 @@ TEST(ReliefReasons, TwoSentencesNameTheFigures) {
       "surface (25 %).");
 }
 
+TEST(ReliefReasons, OfDimmedLightsSayNothingOfWhatWasSeenUndimmed) {
+  ReliefReasons reasons = two_lights();
+  reasons.dimmed_to = 0.43;
+  reasons.score.seen.reset();
+  reasons.score.local_contrast_lx = 12.3;
+  reasons.score.coverage = 0.5;
+  const std::string words = in_two_sentences(reasons);
+  EXPECT_EQ(words.substr(0, words.find(". ")),
+            "A limit dims these lights to 43 % of the levels that they were judged at: recessed places differ from "
+            "what is beside them by 12.3 lx, and 50 % of the features have a shadow's edge");
+}
+
 TEST(ReliefReasons, DarkLightsAreSaidWithTheirFigure) {
   ReliefReasons reasons = two_lights();
   EXPECT_EQ(dark_in_words(reasons), "");
