@@ -105,9 +105,10 @@ struct ReliefSpec {
   double coverage_weight = 0.25;        ///< weight of features with a shadow edge, relative to contrast
   std::optional<std::size_t> camera{};  ///< only relief that it sees counts; none = all
   LightRole role = LightRole::any;
-  std::optional<double> ratio{};  ///< of the key's illuminance to this role's, or, of the key, to all other light
-  SetUp set_up = SetUp::none;     ///< as seen by the camera
-  SeenWeights weights{};          ///< objective "seen"
+  std::optional<double> ratio{};    ///< of the key's illuminance to this role's, or, of the key, to all other light
+  SetUp set_up = SetUp::none;       ///< as seen by the camera
+  SeenWeights weights{};            ///< objective "seen"
+  std::optional<Vec3> light_rgb{};  ///< colour of its lights, as Point::goal_rgb; none = all emitters alike
 };
 
 /// kind == aim: aims and levels of heads that are already hung.

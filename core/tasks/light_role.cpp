@@ -54,7 +54,15 @@ KeyLight key_light_of(const SeenContrast& seen, std::span<const float> lux) {
 
 SeenWishes wishes_of(const ReliefSpec& relief) {
   SeenWishes wishes;
-  if (relief.role == LightRole::rim) wishes = {0, 0, 0, kRimEdgeWeight, 0, wishes.max_clipped};
+  if (relief.role == LightRole::rim) wishes = {0, 0, 0, kRimEdgeWeight, 0};
+  const SeenWeights& weights = relief.weights;
+  wishes.even_weight = weights.even * SeenWishes{}.lit_weight;
+  wishes.shadows_weight = weights.shadows * SeenWishes{}.lit_weight;
+  wishes.fine_weight *= weights.fine;
+  wishes.form_weight *= weights.form;
+  wishes.lit_weight *= weights.lit;
+  wishes.edge_weight *= weights.edge;
+  wishes.max_clipped = weights.max_clipped;
   return wishes;
 }
 

@@ -45,6 +45,7 @@ AimSum AimObjective::nothing() const {
   for (const AimLimit& limit : wishes_.limits) sum.limit_lux.push_back(limit.fixed_lx);
   if (wishes_.seen) sum.seen_lux = wishes_.seen_fixed_lux;
   if (wishes_.seen) sum.seen_lux.resize(wishes_.seen->samples().size(), 0);
+  if (wishes_.seen && wishes_.seen->wishes().shadows_weight > 0) sum.seen_lux_of_each.push_back(sum.seen_lux);
   sum.covered.assign(features_.sizes.size(), 0);
   for (std::size_t i = 0; i < samples_.interest; ++i) sum.mean_lux += sum.sample_lux[i];
   sum.mean_lux /= static_cast<double>(samples_.interest);
@@ -73,6 +74,10 @@ void AimObjective::add(AimSum& sum, const AimColumn& column, double level, HeadR
   for (std::size_t i = 0; i < sum.limit_lux.size(); ++i) sum.limit_lux[i] += level * column.limit_lux[i];
   const auto share = static_cast<float>(level);
   for (std::size_t i = 0; i < sum.seen_lux.size(); ++i) sum.seen_lux[i] += share * column.seen_lux[i];
+  if (!sum.seen_lux_of_each.empty()) {
+    sum.seen_lux_of_each.push_back(column.seen_lux);
+    for (float& lx : sum.seen_lux_of_each.back()) lx *= share;
+  }
   for (std::size_t f = 0; f < sum.covered.size(); ++f)
     if (level * column.feature_lux[f] >= kSeenShare * reference_lx_) sum.covered[f] = 1;
   sum.mean_lux += level * column.mean_lux;
@@ -133,7 +138,8 @@ AimScore AimObjective::scored(const AimSum& sum, bool all) const {
   const auto interest = static_cast<double>(samples_.interest);
   if (all || !wishes_.seen) measure_contrast(sum, score);
   if (wishes_.seen)
-    score.seen = wishes_.seen->score(sum.seen_lux, kDarkestSeen * std::min(reference_lx_, wishes_.max_object_lx));
+    score.seen = wishes_.seen->score(sum.seen_lux, kDarkestSeen * std::min(reference_lx_, wishes_.max_object_lx),
+                                     sum.seen_lux_of_each);
   if (wishes_.seen && wishes_.role.asks())
     score.role = score_role(wishes_.role, sum.seen_lux, wishes_.seen_fixed_lux,
                             kDarkestSeen * std::min(reference_lx_, wishes_.max_object_lx), score.seen->objective);

@@ -93,7 +93,8 @@ struct AimColumn {
 struct AimSum {
   std::vector<double> sample_lux, limit_lux;
   std::vector<float> seen_lux;
-  std::vector<std::uint8_t> covered;  ///< per feature
+  std::vector<std::vector<float>> seen_lux_of_each;  ///< the light that stays, then each head's; only if shadows count
+  std::vector<std::uint8_t> covered;                 ///< per feature
   double mean_lux = 0, key_mean_lux = 0, levels = 0, watts = 0, travel_s = 0, travel_total_s = 0;
 };
 

@@ -18,6 +18,13 @@ constexpr double kHalfContrast = 0.06;
 /// Contrast that counts as a half at the outline.
 constexpr float kHalfOutline = 0.1f;
 
+/// Neighbours face alike within this angle.
+const double kAlikeCosine = std::cos(rad_from_deg(20));
+/// At a shadow's edge a light falls to this share. Where it is below that share of its mean, it casts none that shows.
+constexpr float kInShadow = 0.3f;
+/// Contrast that counts as a half at such an edge.
+constexpr float kHalfShadow = 0.1f;
+
 /// Mannos and Sakrison's sensitivity, over its maximum near 8 cycles/degree.
 double contrast_sensitivity(double cycles_per_degree) {
   const double f = cycles_per_degree;
@@ -92,6 +99,15 @@ SeenContrast::SeenContrast(std::vector<SeenView> views, const SeenWishes& wishes
       beside(p % w + 1 < w, p + 1);
       beside(p >= w, p - w);
       beside(p + w < of.sample_of_pixel.size(), p + w);
+      const auto alike = [&](bool there, std::size_t q) {
+        if (!there || !of.of_object(q)) return;
+        const std::uint32_t a = of.sample_of_pixel[p], b = of.sample_of_pixel[q];
+        const auto first = static_cast<std::uint32_t>(view.first_sample);
+        if (of.samples[a].normal.dot(of.samples[b].normal) > kAlikeCosine)
+          view.alike.emplace_back(first + a, first + b);
+      };
+      alike(p % w + 1 < w, p + 1);
+      alike(p + w < of.sample_of_pixel.size(), p + w);
     }
     add_levels(view);
     views_.push_back(std::move(view));
@@ -150,7 +166,29 @@ void SeenContrast::add_levels(View& view) const {
   }
 }
 
-SeenScore SeenContrast::score(std::span<const float> lux, double darkest_lx) const {
+double SeenContrast::second_shadows(std::span<const float> lux, std::span<const std::vector<float>> lights) const {
+  double all = 0, most = 0;
+  for (const std::vector<float>& light : lights) {
+    LUXRIG_CHECK(light.size() == samples_.size(), "{} for {} samples", light.size(), samples_.size());
+    double sum = 0, edges = 0;
+    for (std::size_t i = 0; i < light.size(); ++i) sum += of_object_[i] ? light[i] : 0;
+    const auto least = kInShadow * static_cast<float>(sum / object_samples_);
+    for (const View& view : views_)
+      for (const auto& [a, b] : view.alike) {
+        const auto [low, high] = std::minmax(light[a], light[b]);
+        if (!(high > least) || low > kInShadow * high) continue;
+        const float c = (high - low) / (lux[a] + lux[b]);
+        edges += c / (c + kHalfShadow);
+      }
+    all += edges;
+    most = std::max(most, edges);
+  }
+  const double width_px = std::sqrt(object_samples_ / static_cast<double>(views_.size()));
+  return std::min(1.0, (all - most) / (width_px * static_cast<double>(views_.size())));
+}
+
+SeenScore SeenContrast::score(std::span<const float> lux, double darkest_lx,
+                              std::span<const std::vector<float>> lights) const {
   LUXRIG_CHECK(lux.size() == samples_.size(), "{} for {} samples", lux.size(), samples_.size());
   SeenScore score;
   std::vector<float> response(lux.size());  // first the luminance, times π
@@ -163,7 +201,9 @@ SeenScore SeenContrast::score(std::span<const float> lux, double darkest_lx) con
   const double mean = std::max(sum, darkest_lx * reflectance_sum_) / object_samples_;
   if (mean > 0) {
     const auto over_mean = static_cast<float>(1 / mean);
-    double lit = 0;
+    double lit = 0, lux_sum = 0;
+    for (std::size_t i = 0; i < lux.size(); ++i) lux_sum += of_object_[i] ? lux[i] : 0;
+    const auto mean_lx = static_cast<float>(std::max(lux_sum / object_samples_, darkest_lx));
     std::size_t burnt = 0, crushed = 0;
     constexpr auto kBurnt = static_cast<float>(kBurntOverMean), kCrushed = static_cast<float>(kCrushedOverMean),
                    kOverRamp = static_cast<float>(1 / (kLitOverMean - kCrushedOverMean));
@@ -174,10 +214,13 @@ SeenScore SeenContrast::score(std::span<const float> lux, double darkest_lx) con
       burnt += x > kBurnt ? 1 : 0;
       crushed += x < kCrushed ? 1 : 0;
       lit += std::clamp((x - kCrushed) * kOverRamp, 0.0f, 1.0f);
+      score.even += 2 * lux[i] / (lux[i] + mean_lx);
     }
     score.burnt_share = static_cast<double>(burnt) / object_samples_;
     score.crushed_share = static_cast<double>(crushed) / object_samples_;
     score.lit_share = lit / object_samples_;
+    score.even /= object_samples_;
+    if (wishes_.shadows_weight > 0) score.shadows = second_shadows(lux, lights);
     for (const View& view : views_)
       score_view(view, std::span(response).subspan(view.first_sample, view.seen.samples.size()), score);
   } else {
@@ -185,7 +228,8 @@ SeenScore SeenContrast::score(std::span<const float> lux, double darkest_lx) con
   }
   const double clipped = score.burnt_share + score.crushed_share - wishes_.max_clipped;
   score.objective = wishes_.fine_weight * score.fine + wishes_.form_weight * score.form +
-                    wishes_.lit_weight * score.lit_share + wishes_.edge_weight * score.edge -
+                    wishes_.lit_weight * score.lit_share + wishes_.edge_weight * score.edge +
+                    wishes_.even_weight * score.even - wishes_.shadows_weight * score.shadows -
                     wishes_.clipped_weight * std::max(0.0, clipped);
   return score;
 }

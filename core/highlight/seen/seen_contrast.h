@@ -32,6 +32,7 @@ struct SeenWishes {
   double fine_weight = 6, form_weight = 6, lit_weight = 1, edge_weight = 0.1;
   double clipped_weight = 1;  ///< of the burnt and crushed share beyond the stated one
   double max_clipped = 0.02;  ///< of the object's seen samples
+  double even_weight = 0, shadows_weight = 0;
 };
 
 struct SeenScore {
@@ -40,8 +41,10 @@ struct SeenScore {
   double lit_share = 0;  ///< of the object's samples: 1 from kLitOverMean up, falling to 0 at kCrushedOverMean
   double edge = 0;       ///< contrast of the object's outline against what is beside it, 0…1
   double burnt_share = 0, crushed_share = 0;  ///< of the object's samples
-  double mean_lx = 0;                         ///< mean illuminance of the object's samples, weighted by reflectance
-  double objective = 0;                       ///< weighted sum
+  double even = 0;       ///< 2 e / (e + mean) of illuminance e, mean over the object's samples: 1 = even, 0 = dark
+  double shadows = 0;    ///< second_shadows(); 0 if their weight is
+  double mean_lx = 0;    ///< mean illuminance of the object's samples, weighted by reflectance
+  double objective = 0;  ///< weighted sum
 };
 
 /// Made once per object and views; a score is then arithmetic on lux (tens of microseconds for one view). May be used
@@ -60,7 +63,13 @@ class SeenContrast {
 
   /// lux         at each sample, of all light, direct and reflected; finite and ≥ 0
   /// darkest_lx  an eye or a camera does not adapt to a darker object (mean illuminance)
-  [[nodiscard]] SeenScore score(std::span<const float> lux, double darkest_lx = 0) const;
+  /// lights      the same of each light, for SeenScore::shadows; may be empty without a weight of theirs
+  [[nodiscard]] SeenScore score(std::span<const float> lux, double darkest_lx = 0,
+                                std::span<const std::vector<float>> lights = {}) const;
+  /// Double and crossing shadows on the object: how long the edges of all cast shadows are but those of the light that
+  /// draws most, weighted by their contrast, over the object's width; at most 1. An edge is where a light ends between
+  /// neighbours that face alike, so a surface that turns away from a light has none.
+  [[nodiscard]] double second_shadows(std::span<const float> lux, std::span<const std::vector<float>> lights) const;
 
  private:
   /// One level of a view's pyramid: constants of the object's form.
@@ -75,6 +84,7 @@ class SeenContrast {
     std::size_t first_sample = 0;
     std::vector<Level> levels;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> outline;  ///< samples inside and outside; kNothing = black
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> alike;    ///< of all views: neighbours that face alike
   };
   void add_levels(View& view) const;
   void score_view(const View& view, std::span<const float> response, SeenScore& score) const;

@@ -39,8 +39,8 @@ SeenSelection::SeenSelection(const SeenContrast& seen, const RayScene& room, std
     darkest_lx_ = std::max(darkest_lx_, kDarkestShare * seen.score(lux).mean_lx);
 }
 
-SeenScore SeenSelection::scored(std::span<const float> lux) const {
-  SeenScore score = seen_.score(lux, darkest_lx_);
+SeenScore SeenSelection::scored(std::span<const float> lux, std::span<const std::vector<float>> lights) const {
+  SeenScore score = seen_.score(lux, darkest_lx_, lights);
   if (options_.role.asks())
     score.objective = score_role(options_.role, lux, fixed_lux_, darkest_lx_, score.objective).objective;
   return score;
@@ -57,14 +57,26 @@ std::vector<float> SeenSelection::light_of(const SeenChoice& choice, std::size_t
   return lux;
 }
 
+std::vector<std::vector<float>> SeenSelection::light_of_each(const SeenChoice& choice, std::size_t without) const {
+  if (!(seen_.wishes().shadows_weight > 0)) return {};
+  std::vector<std::vector<float>> lights = {fixed_lux_};
+  for (std::size_t l = 0; l < choice.candidates.size(); ++l) {
+    if (l == without) continue;
+    lights.push_back(lux_[choice.candidates[l]]);
+    for (float& lx : lights.back()) lx *= static_cast<float>(choice.levels[l]);
+  }
+  return lights;
+}
+
 SeenScore SeenSelection::score(std::span<const std::size_t> candidates, std::span<const double> levels) const {
   LUXRIG_CHECK(candidates.size() == levels.size(), "{} levels of {} lights", levels.size(), candidates.size());
   const SeenChoice choice{{candidates.begin(), candidates.end()}, {levels.begin(), levels.end()}, {}};
-  return scored(light_of(choice, kNone));
+  return scored(light_of(choice, kNone), light_of_each(choice, kNone));
 }
 
 SeenSelection::Taken SeenSelection::best_beside(const SeenChoice& choice, std::size_t without) const {
   const std::vector<float> others = light_of(choice, without);
+  const std::vector<std::vector<float>> each_of_others = light_of_each(choice, without);
   std::vector<Taken> best(candidates_.size());
   parallel_for(candidates_.size(), options_.threads, [&](std::size_t c) {
     best[c] = {c, 0, -std::numeric_limits<double>::infinity()};
@@ -75,6 +87,8 @@ SeenSelection::Taken SeenSelection::best_beside(const SeenChoice& choice, std::s
            (candidates_[c].side != 0 && candidates_[choice.candidates[l]].side == candidates_[c].side)))
         return;
     std::vector<float> lux(others.size());
+    std::vector<std::vector<float>> each = each_of_others;
+    if (!each.empty()) each.push_back(lux_[c]);
     double most = 1;
     if (options_.role.asks() && options_.role.wanted_lx > 0) {
       const double full_lx = mean_lx_of(options_.role.wanted, lux_[c]);
@@ -85,7 +99,8 @@ SeenSelection::Taken SeenSelection::best_beside(const SeenChoice& choice, std::s
       const double level = share * most;
       const auto factor = static_cast<float>(level);
       for (std::size_t i = 0; i < lux.size(); ++i) lux[i] = others[i] + factor * lux_[c][i];
-      const double objective = scored(lux).objective;
+      for (std::size_t i = 0; !each.empty() && i < lux.size(); ++i) each.back()[i] = factor * lux_[c][i];
+      const double objective = scored(lux, each).objective;
       if (objective > best[c].objective) best[c] = {c, level, objective};
     }
   });

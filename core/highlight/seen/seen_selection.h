@@ -50,7 +50,10 @@ class SeenSelection {
     std::size_t candidate = 0;
     double level = 0, objective = 0;
   };
-  [[nodiscard]] SeenScore scored(std::span<const float> lux) const;
+  /// lights: of each alone, if shadows count.
+  [[nodiscard]] SeenScore scored(std::span<const float> lux, std::span<const std::vector<float>> lights) const;
+  /// The light that stays, and that of each chosen one but `without`; empty if shadows do not count.
+  [[nodiscard]] std::vector<std::vector<float>> light_of_each(const SeenChoice& choice, std::size_t without) const;
   [[nodiscard]] std::vector<float> light_of(const SeenChoice& choice, std::size_t without) const;
   /// The best light beside all chosen ones but one.
   [[nodiscard]] Taken best_beside(const SeenChoice& choice, std::size_t without) const;

@@ -23,8 +23,8 @@ struct SeenView {
 
   int width_px = 0, height_px = 0;
   std::vector<OrientedPoint> samples;  ///< one per pixel: of the object, then of what borders on it or is around it
-  std::size_t object_samples = 0;              ///< number of the object's, which come first
-  std::vector<float> reflectance;              ///< of each sample, luminous
+  std::size_t object_samples = 0;      ///< number of the object's, which come first
+  std::vector<float> reflectance;      ///< of each sample, luminous
   std::vector<std::uint32_t> sample_of_pixel;  ///< kNothing = no sample there
   [[nodiscard]] bool of_object(std::size_t pixel) const { return sample_of_pixel[pixel] < object_samples; }
 };

@@ -53,6 +53,13 @@ void RigReader::read_relief(Section& s, ReliefSpec& relief) {
     problems.add(s.place_of("max_object_lx"), "max_object_lx of 0 leaves nothing to light", "give it some lux");
   s.read("coverage_weight", relief.coverage_weight);
   s.read_choice("objective", relief.seen);
+  s.read("fine_weight", relief.weights.fine);
+  s.read("form_weight", relief.weights.form);
+  s.read("lit_weight", relief.weights.lit);
+  s.read("edge_weight", relief.weights.edge);
+  s.read("even_weight", relief.weights.even);
+  s.read("shadow_weight", relief.weights.shadows);
+  s.read("max_clipped", relief.weights.max_clipped);
   read_role(s, relief);
 }
 
@@ -83,7 +90,8 @@ void RigReader::read_highlight(Section& s, HighlightSpec& highlight) {
 
 void RigReader::refuse_roles_unseen(Section& s, const ReliefSpec& relief) {
   if (relief.seen) return;
-  for (const char* key : {"role", "set_up"})
+  for (const char* key : {"role", "set_up", "fine_weight", "form_weight", "lit_weight", "edge_weight", "even_weight",
+                          "shadow_weight", "max_clipped"})
     s.refuse(key, fmt::format("{} has no effect with objective = \"thesis\"", key), "add objective = \"seen\"");
 }
 

@@ -117,6 +117,7 @@ name = "detail"; kind = "highlight"; luminaire; object; max_lights; objective
 name = "held"; kind = "directions"; object; distance_m; seen_by = "front"; set_up
 [[task]]
 name = "lit"; kind = "highlight"; luminaire; object; objective = "seen"; role = "key"; ratio
+fine_weight; form_weight; lit_weight; edge_weight; even_weight; shadow_weight; max_clipped
 [[task]]
 name = "beside"; kind = "aim"; object; objective = "seen"; role #> "fill"
 [[keep_out]]

@@ -80,6 +80,54 @@ TEST(SeenContrast, LitShareOfASphereFromTheFrontAsInClosedForm) {
   EXPECT_NEAR(score.lit_share, 1 - lost, 0.005);
 }
 
+// Two lights on a square of 1 m; the shadow of each is 0.1 by 0.4 m, and they share a long side. Edges of one: 1 m, of
+// which 0.4 m divide one light from the other (contrast 1/2) and 0.6 m one from both (1/3).
+TEST(SeenContrast, SecondShadowsAreAsLongAsTheirEdges) {
+  const RayScene plane(flat_square());
+  const SeenContrast seen = contrast_of_scene(plane, kEyeAbove);
+  std::vector<std::vector<float>> lights(2);
+  std::vector<float> lux;
+  for (const OrientedPoint& at : seen.samples()) {
+    const double x = at.position_world_m.x();
+    const bool beside = std::abs(at.position_world_m.y()) < 0.2;
+    lights[0].push_back(beside && x > 0 && x < 0.1 ? 0.0f : 1.0f);
+    lights[1].push_back(beside && x < 0 && x > -0.1 ? 0.0f : 1.0f);
+    lux.push_back(lights[0].back() + lights[1].back());
+  }
+  const double third = 1.0 / 3, expected = 0.4 * 0.5 / 0.6 + 0.6 * third / (third + 0.1);
+  EXPECT_NEAR(seen.second_shadows(lux, lights), expected, 0.05 * expected);
+  EXPECT_EQ(seen.second_shadows(lights[0], {lights.data(), 1}), 0) << "one light draws one set of shadows";
+  // A light that is hardly seen beside the other draws shadows that are hardly seen.
+  std::vector<float> unlike = lights[0];
+  for (float& lx : lights[1]) lx *= 0.01f;
+  for (std::size_t i = 0; i < unlike.size(); ++i) unlike[i] += lights[1][i];
+  EXPECT_LT(seen.second_shadows(unlike, lights), 0.15 * expected);
+}
+
+TEST(SeenContrast, ASurfaceThatTurnsAwayDrawsNoSecondShadow) {
+  const RayScene sphere(uv_sphere(0.5, 128));
+  const SeenContrast seen = contrast_of_scene(sphere, {0, -200, 0});
+  std::vector<std::vector<float>> lights;
+  for (const double side : {-1.0, 1.0})
+    lights.push_back(distant_lux(sphere, seen.samples(), Vec3(side, -0.2, 0).normalized()));
+  std::vector<float> lux = lights[0];
+  for (std::size_t i = 0; i < lux.size(); ++i) lux[i] += lights[1][i];
+  EXPECT_LT(seen.second_shadows(lux, lights), 0.02);
+}
+
+// Half of a plane at 1, half at 3: the mean is 2, so (2/3 + 6/5) / 2.
+TEST(SeenContrast, EvennessIsAsInClosedForm) {
+  const RayScene plane(flat_square());
+  const SeenContrast seen = contrast_of_scene(plane, kEyeAbove);
+  std::vector<float> lux;
+  for (const OrientedPoint& at : seen.samples()) lux.push_back(at.position_world_m.x() > 0 ? 1.0f : 3.0f);
+  EXPECT_NEAR(seen.score(lux).even, (2.0 / 3 + 6.0 / 5) / 2, 0.003);
+  for (float& lx : lux) lx = 7;
+  EXPECT_NEAR(seen.score(lux).even, 1, 1e-5);
+  for (float& lx : lux) lx = 0;
+  EXPECT_EQ(seen.score(lux).even, 0);
+}
+
 TEST(SeenContrast, ScalingAllLightsChangesNothing) {
   const RayScene object(ridges(6, 0.02));
   const SeenContrast seen = contrast_of_scene(object, kEyeAbove);
@@ -179,7 +227,7 @@ TEST(SeenContrast, TermsStayWithinTheirRangeInAnyLight) {
       lux.push_back(random.between(0, 1) < lit ? static_cast<float>(random.between(0, most)) : 0.0f);
     const SeenScore score = seen.score(lux);
     for (const double term : {score.fine, score.form, score.lit_share, score.edge, score.burnt_share,
-                              score.crushed_share, score.burnt_share + score.crushed_share}) {
+                              score.crushed_share, score.burnt_share + score.crushed_share, score.even}) {
       EXPECT_GE(term, 0);
       EXPECT_LE(term, 1 + 1e-6);
     }
