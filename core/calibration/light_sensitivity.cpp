@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/calibration/mount_place.h"
 #include "core/check.h"
 #include "core/tasks/rig_transport.h"
 
@@ -97,11 +98,13 @@ Result<LightSensitivity> mount_sensitivity(const Rig& rig, const RayScene& rays,
     const VectorXd at = mounts.empty() ? VectorXd(VectorXd::Zero(kMountUnknowns)) : mounts[f];
     const Displacements moves(at, priors);
     std::vector<Emitter> emitters;
-    for (const VectorXd& off : moves.off)
+    for (const VectorXd& off : moves.off) {
+      const Vec3 offset_m = offset_in_room(rays, fixture.world_from_mount.translation_m, off.head<3>());
       emitters.push_back(emitter_of(rig.luminaires[fixture.luminaire],
-                                    world_from_lamp(displaced(fixture.world_from_mount, off.head<3>(), off.tail<3>()),
+                                    world_from_lamp(displaced(fixture.world_from_mount, offset_m, off.tail<3>()),
                                                     fixture.joints, fixture.roll_rad),
                                     fixture.joints.beam_rad));
+    }
     const auto lux = direct->evaluate(receivers, emitters, {});
     if (!lux) return tl::unexpected(lux.error());
     differences(lux->lux_per_level, moves.step, sensitivity.mount[f], sensitivity.bend[f]);

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/calibration/mount_place.h"
 #include "core/check.h"
 #include "core/output/dimming.h"
 #include "core/tasks/rig_version.h"
@@ -312,7 +313,8 @@ Calibration calibration_of(const Session& session, const RigLight& light, std::s
     CalibratedFixture found;
     found.name = rig.fixtures[f].name;
     if (known.gain_is_measured(f)) found.output = {known.gain(f), known.gain_standard_error(f)};
-    found.offset_m = known.mount(f).head<3>();
+    found.offset_m =
+        offset_in_room(*session.rays, rig.fixtures[f].world_from_mount.translation_m, known.mount(f).head<3>());
     found.offset_error_m = known.mount_standard_error(f).head<3>();
     found.turn_deg = deg(known.mount(f));
     found.turn_error_deg = deg(known.mount_standard_error(f));
@@ -328,7 +330,9 @@ Calibration calibration_of(const Session& session, const RigLight& light, std::s
     if (!rig.points[p].goal_lx && !rig.points[p].max_lx) continue;
     for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
       const LightEstimate lit = known.at(p, Eigen::VectorXd::Unit(fixtures, static_cast<Index>(f)));
-      calibration.lights.push_back({rig.points[p].name, rig.fixtures[f].name, {lit.lux, lit.standard_error_lx}});
+      // The estimate is linear: of a lamp that hardly reaches the point it may be below 0, within its error.
+      calibration.lights.push_back(
+          {rig.points[p].name, rig.fixtures[f].name, {std::max(0.0, lit.lux), lit.standard_error_lx}});
     }
   }
   return calibration;

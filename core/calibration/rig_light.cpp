@@ -6,6 +6,7 @@
 
 #include "core/calibration/lamp_steps.h"
 #include "core/calibration/light_sensitivity.h"
+#include "core/calibration/mount_place.h"
 #include "core/calibration/next_measurement.h"
 
 namespace luxrig {
@@ -105,9 +106,11 @@ double RigLight::apart(const Found& a, const Found& b) const {
 
 Result<void> RigLight::trace_anew(const Found& at) {
   Rig rig = session_->rig;
-  for (std::size_t f = 0; f < rig.fixtures.size(); ++f)
-    rig.fixtures[f].world_from_mount =
-        displaced(rig.fixtures[f].world_from_mount, at.mounts[f].head<3>(), at.mounts[f].tail<3>());
+  for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
+    Pose& mount = rig.fixtures[f].world_from_mount;
+    mount = displaced(mount, offset_in_room(*session_->rays, mount.translation_m, at.mounts[f].head<3>()),
+                      at.mounts[f].tail<3>());
+  }
   Scene scene = session_->scene;
   for (std::size_t m = 0; m < scene.materials.size(); ++m)
     scene.materials[m].reflectance_rgb = (scene.materials[m].reflectance_rgb * (1 + at.paint[static_cast<Index>(m)]))

@@ -111,6 +111,27 @@ Look look_that_stays(const ReliefSurroundings& around) {
 /// Distributions by luminaire and beam angle: heads of one kind share theirs.
 using BeamsOfLuminaires = std::map<std::pair<const Luminaire*, double>, Intensity>;
 
+/// Farther from a wanted colour than this, anybody sees another colour.
+constexpr double kOtherColour_uv = 0.02;
+
+/// All emitters alike, or in the colour that the task wants.
+Result<EmitterMix> mix_of_head(const Rig& rig, std::size_t head, const std::optional<Vec3>& wanted_rgb) {
+  const std::vector<std::size_t> housing = housing_of(rig, head);
+  if (!wanted_rgb || housing.size() == 1) return EmitterMix{std::vector<double>(housing.size(), 1), 1, 0};
+  std::vector<EmitterLight> emitters;
+  for (const std::size_t f : housing) {
+    const Luminaire& luminaire = rig.luminaires[rig.fixtures[f].luminaire];
+    emitters.push_back({luminaire.lumens, luminaire.colour_rgb});
+  }
+  EmitterMix mix = mix_of_colour(emitters, *wanted_rgb);
+  if (mix.off_uv > kOtherColour_uv)
+    return refusal(fmt::format(
+        "fixture \"{}\" cannot give light of this cct_k: the nearest that its emitters reach is {:.3f} off in "
+        "u'v'. Ask for a colour between those of its emitters, or name other heads",
+        housing_name(rig, head), mix.off_uv));
+  return mix;
+}
+
 /// Its present zoom, then stops over its zoom range.
 std::vector<ZoomStop> zoom_stops(const Luminaire& luminaire, const Fixture& fixture, double now_rad,
                                  BeamsOfLuminaires& known) {
@@ -131,7 +152,8 @@ std::vector<ZoomStop> zoom_stops(const Luminaire& luminaire, const Fixture& fixt
 }
 
 /// All emitters of a housing as one light.
-HangingHead hanging_head(const Rig& rig, std::size_t index, const Joints& present, BeamsOfLuminaires& known) {
+HangingHead hanging_head(const Rig& rig, std::size_t index, const Joints& present, const EmitterMix& mix,
+                         BeamsOfLuminaires& known) {
   const Fixture& fixture = rig.fixtures[index];
   const Luminaire& luminaire = housing_luminaire(rig, index);
   HangingHead head;
@@ -146,8 +168,11 @@ HangingHead hanging_head(const Rig& rig, std::size_t index, const Joints& presen
   }
   if (fixture.range.zooms()) head.zoom_speed_rad_s = fixture.zoom_speed_rad_s;
   head.zoom = zoom_stops(luminaire, fixture, present.beam_rad, known);
+  if (mix.flux_share != 1)
+    for (ZoomStop& stop : head.zoom)
+      stop.intensity = scaled_to_flux(stop.intensity, mix.flux_share * stop.intensity->flux_lm());
   head.max_level = rig.max_level(fixture);
-  head.watts = luminaire.watts.value_or(0);
+  head.watts = mix.flux_share * luminaire.watts.value_or(0);
   return head;
 }
 
@@ -289,11 +314,15 @@ Result<AimedFixtures> aim_fixtures(const ReliefSurroundings& around, const Studi
   const KeepOutZones zones(around.rig);
   std::vector<HangingHead> heads;
   std::vector<HeadSetting> present;
+  std::vector<EmitterMix> mixes;
   BeamsOfLuminaires known;
   for (std::size_t k = 0; k < spec.heads.size(); ++k) {
     const Joints& joints = around.look.joints[spec.heads[k]];
     if (spec.key == spec.heads[k]) wishes.key = k;
-    heads.push_back(hanging_head(around.rig, spec.heads[k], joints, known));
+    auto mix = mix_of_head(around.rig, spec.heads[k], spec.relief.light_rgb);
+    if (!mix) return in_words(mix.error(), fmt::format("task \"{}\"", task.name));
+    heads.push_back(hanging_head(around.rig, spec.heads[k], joints, *mix, known));
+    mixes.push_back(std::move(*mix));
     heads.back().may_light = [&zones, head = spec.heads[k]](const Joints& at) { return !zones.met(head, at); };
     present.push_back({joints, 0, present_levels[k]});
   }
@@ -343,6 +372,7 @@ Result<AimedFixtures> aim_fixtures(const ReliefSurroundings& around, const Studi
   }
   if (!best) return refuse(trouble);
   AimedFixtures aimed;
+  aimed.mixes = std::move(mixes);
   aimed.score = std::move(best->score);
   aimed.tried = tried;
   for (std::size_t k = 0; k < heads.size(); ++k) {

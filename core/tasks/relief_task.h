@@ -7,6 +7,7 @@
 #include "core/highlight/surface/relief_study.h"
 #include "core/rig/rig.h"
 #include "core/scene/ray_scene.h"
+#include "core/tasks/emitter_mix.h"
 #include "core/tasks/light_role.h"
 #include "core/tasks/session.h"
 
@@ -17,10 +18,10 @@ struct ReliefSurroundings {
   const Rig& rig;
   const Scene& scene;
   const RayScene& rays;
-  Look look;                   ///< at the start: levels of the fixtures that are not sought, joints of all
-  std::vector<bool> sought;    ///< per fixture
-  Eigen::VectorXd point_lux;   ///< light of the others at the rig's points
-  double max_watts = 0;        ///< of all sought lights together; may be infinite
+  Look look;                  ///< at the start: levels of the fixtures that are not sought, joints of all
+  std::vector<bool> sought;   ///< per fixture
+  Eigen::VectorXd point_lux;  ///< light of the others at the rig's points
+  double max_watts = 0;       ///< of all sought lights together; may be infinite
 };
 
 struct StudiedObject {
@@ -33,8 +34,9 @@ struct StudiedObject {
                                                  const ComputeOptions& options);
 
 struct AimedFixtures {
-  std::vector<AimedHead> heads;  ///< one per head of the task
-  AimScore score, before;        ///< `before`: with the aims and levels at the start
+  std::vector<AimedHead> heads;   ///< one per head of the task
+  std::vector<EmitterMix> mixes;  ///< per head: of its emitters, at level 1
+  AimScore score, before;         ///< `before`: with the aims and levels at the start
   std::size_t tried = 0;
   std::vector<AimScore> without;    ///< per head: the score with that head dark
   std::vector<double> gain_if_lit;  ///< AimResult

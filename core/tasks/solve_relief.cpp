@@ -127,8 +127,10 @@ Result<void> TaskSolver::aim(const Task& task) {
   if (!aimed) return tl::unexpected(aimed.error());
   for (std::size_t k = 0; k < heads.size(); ++k) {
     const AimedHead& head = aimed->heads[k];
-    for (const std::size_t emitter : housing_of(rig_, heads[k])) {
-      level_[static_cast<Index>(emitter)] = head.setting.level;
+    const std::vector<std::size_t> housing = housing_of(rig_, heads[k]);
+    for (std::size_t e = 0; e < housing.size(); ++e) {
+      const std::size_t emitter = housing[e];
+      level_[static_cast<Index>(emitter)] = head.setting.level * aimed->mixes[k].levels[e];
       if (!rig_.fixtures[emitter].moves || !(head.setting.level > 0)) continue;  // a dark head keeps its aim
       look_.joints[emitter] = head.setting.joints;
       look_.aim_world_m[emitter] = head.aim_world_m;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "core/photometry/light_colour.h"
 #include "core/rig/housing.h"
 #include "core/rig/reading/rig_reader.h"
 #include "core/text/nearest.h"
@@ -150,6 +151,11 @@ void RigReader::read_aim_task(Section& s, AimSpec& aim) {
       problems.add(s.has("heads") ? s.place_of("heads") : s.in_file(),
                    fmt::format("fixture {} is on or off, and an aim sets levels", in_quotes(rig.fixtures[head].name)),
                    "name the other heads as heads = […], or put its lamp on a dimmer");
+  double cct_k = 0;
+  if (s.read("cct_k", cct_k)) aim.relief.light_rgb = rgb_of_cct(cct_k);
+  if (std::none_of(aim.heads.begin(), aim.heads.end(), [&](std::size_t head) { return rig.fixtures[head].housing; }))
+    s.refuse("cct_k", "cct_k has no effect: no head of this task has emitters to mix light of",
+             "remove it, or name heads that have some");
   if ((aim.key = heads.read_reference(s, "key")) &&
       std::find(aim.heads.begin(), aim.heads.end(), *aim.key) == aim.heads.end())
     problems.add(s.place_of("key"), "the key light is none of the heads", "name one of them");

@@ -25,8 +25,8 @@ const KindKeys kKeysOfKinds[] = {
       "edge_weight", "even_weight", "shadow_weight", "max_clipped"}},
     {{TaskKind::directions}, {"distance_m"}},
     {{TaskKind::aim},
-     {"contrast", "heads", "key", "min_key_to_fill", "max_key_to_fill", "eyes", "max_eye_lx", "base_lx", "base_weight",
-      "energy_weight", "travel_weight"}},
+     {"contrast", "heads", "key", "min_key_to_fill", "max_key_to_fill", "eyes", "max_eye_lx", "cct_k", "base_lx",
+      "base_weight", "energy_weight", "travel_weight"}},
 };
 
 void refuse_keys_of_other_kinds(Section& s, TaskKind kind) {

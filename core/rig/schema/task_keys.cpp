@@ -236,6 +236,10 @@ constexpr KeySpec kTaskKeys[] = {
     {"task", "heads", texts, "", kNone, kAny, "", R"(["head-*"])",
      "fixtures to aim and dim, by name (`*` and `?`); left out, all that move. One that does not move is only "
      "dimmed; one with emitters is one light, its emitters at one level (only with kind `aim`, as all keys below)"},
+    {"task", "cct_k", number, "K", kNone, kKelvin, "", "3000",
+     "colour temperature of its light, mixed of the emitters of its heads; left out, all emitters alike. A head "
+     "without "
+     "emitters keeps its own. So a key can be warm and a fill cool"},
     {"task", "key", text, "", kNone, kAny, "", R"("head-1")", "the fixture that is the key light"},
     {"task",
      "min_key_to_fill",

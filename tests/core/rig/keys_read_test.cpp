@@ -97,7 +97,8 @@ std::string dump(const Rig& rig) {
     for (const ReliefSpec& r : {a.relief, h.relief, d.relief})
       add(r.object, text_of(r.scale_m), r.interest, text_of(r.max_lx), text_of(r.camera), r.seen, r.relative,
           r.coverage_weight, static_cast<int>(r.role), text_of(r.ratio), static_cast<int>(r.set_up), r.weights.fine,
-          r.weights.form, r.weights.lit, r.weights.edge, r.weights.even, r.weights.shadows, r.weights.max_clipped);
+          r.weights.form, r.weights.lit, r.weights.edge, r.weights.even, r.weights.shadows, r.weights.max_clipped,
+          r.light_rgb ? text_of(*r.light_rgb) : "");
     for (const std::size_t head : a.heads) add("head", head);
     for (const std::size_t eye : a.eyes) add("eye", eye);
     add(text_of(a.key), a.min_key_to_fill, text_of(a.max_key_to_fill), text_of(a.max_eye_lx), a.energy_weight,

@@ -52,6 +52,12 @@ name; lumens; watts; cct_k; rest
 name = "red"; lumens; watts; colour
 [[luminaire.emitters]]
 name = "blue"; lumens; watts; xy
+[[luminaire]]
+name = "tunable"; model = "isotropic"
+[[luminaire.emitters]]
+name = "warm white"; lumens
+[[luminaire.emitters]]
+name = "cool white"; lumens
 [[bus]]
 name; driver; rest; priority = 100
 [[bus]]
@@ -80,6 +86,8 @@ name = "product"; luminaire; position_m; bus = "field"; unit = 7; register_map; 
 name = "by-name"; luminaire; position_m; bus = "field"; unit = 8; register_map; output #> "out2"
 [[fixture]]
 name = "contactor"; luminaire; position_m; bus; address = 100; switched; max_level = 0
+[[fixture]]
+name = "wash"; luminaire = "tunable"; position_m; bus; address = 200; slots = ["emitter:warm white", "emitter:cool white"]
 [[luxmeter]]
 name; point #> "floor"; bus #> "dmx"; unit; register; rest
 [[luxmeter]]
@@ -119,7 +127,7 @@ name = "held"; kind = "directions"; object; distance_m; seen_by = "front"; set_u
 name = "lit"; kind = "highlight"; luminaire; object; objective = "seen"; role = "key"; ratio
 fine_weight; form_weight; lit_weight; edge_weight; even_weight; shadow_weight; max_clipped
 [[task]]
-name = "beside"; kind = "aim"; object; objective = "seen"; role #> "fill"
+name = "beside"; kind = "aim"; object; objective = "seen"; role #> "fill"; heads = ["wash"]; cct_k
 [[keep_out]]
 name; box_m; heads #> ["zoomer"]; rest
 [[keep_out]]

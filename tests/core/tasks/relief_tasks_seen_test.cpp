@@ -41,6 +41,35 @@ TEST_F(AimTask, ReflectedLightFillsWhatIsSeen) {
   EXPECT_LE(*filled.plan.tasks[0].relief->clipped_share, *direct.plan.tasks[0].relief->clipped_share + 0.02);
 }
 
+// Both heads have a warm and a cool emitter.
+TEST_F(AimTask, MixesTheWantedColourOfItsEmitters) {
+  std::string rig = replaced(kWellRig, "lumens = 800\nwatts = 10\n",
+                             "[[luminaire.emitters]]\nname = \"warm\"\nlumens = 400\ncct_k = 2700\n"
+                             "[[luminaire.emitters]]\nname = \"cool\"\nlumens = 400\ncct_k = 6500\n");
+  for (const char* slots : {"1\nslots", "11\nslots"})
+    rig = replaced(rig, std::string(slots) + " = [\"pan\", \"tilt\", \"dimmer\"]",
+                   std::string(slots) + " = [\"pan\", \"tilt\", \"emitter:warm\", \"emitter:cool\"]");
+  const auto levels = [&](const std::string& key) {
+    return levels_of(solved_of(well(rig + kSeenAim + key), direct_light()));
+  };
+  const Eigen::VectorXd alike = levels(""), warm = levels("cct_k = 2700\n"), between = levels("cct_k = 4000\n");
+  for (Eigen::Index head = 0; head < 4; head += 2) {
+    EXPECT_EQ(alike[head], alike[head + 1]);
+    EXPECT_NEAR(warm[head + 1], 0, 1e-9);
+    if (!(between[head] > 0)) continue;
+    const double mixed = between[head + 1] / between[head];
+    EXPECT_GT(mixed, 0.5);
+    EXPECT_LT(mixed, 2);
+  }
+  EXPECT_GT(warm.maxCoeff(), 0.1);
+  EXPECT_GT(between.maxCoeff(), 0.1);
+  const Session orange = well(rig + kSeenAim + "cct_k = 1700\n");
+  const auto refused = solve_tasks(orange, transport_of(orange, direct_light()), direct_light());
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().detail.find("cannot give light of this cct_k"), std::string::npos)
+      << refused.error().detail;
+}
+
 TEST_F(HighlightTask, ChoosesPlacesByWhatIsSeen) {
   const std::string seen = replaced(kHighlight, "object = \"slab\"", "object = \"slab\"\nobjective = \"seen\"");
   const SolvedTasks solved = solved_of(well(std::string(kWellRig) + seen), direct_light());

@@ -125,7 +125,11 @@ Result<std::filesystem::path> keep_result(const MeasuredRig& measured, const Com
   put_heads(rig, measured.heads, earlier, found);
   put_cameras(rig, measuring.cameras, measuring.seen, measuring.light, earlier, found);
   found.as_found = version_as_found(measuring.session, found);
-  if (auto written = write_file(measured.file, to_json(found)); !written) return tl::unexpected(written.error());
+  const std::string text = to_json(found);
+  if (const auto read = calibration_from_json(text, measured.file.string()); !read)  // nobody could use it
+    return tl::unexpected(Fault{
+        Cause::invalid, "", "what was found is out of range, and the last one stays: " + read.error()[0].text(), {}});
+  if (auto written = write_file(measured.file, text); !written) return tl::unexpected(written.error());
   CalibrationReport told = report_of(measured.with_places, measured.before, measuring.light, std::move(found),
                                      kLevelOfUse, measuring.no_points());
   told.by = measured.by;
