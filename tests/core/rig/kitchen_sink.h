@@ -52,6 +52,8 @@ name; lumens; watts; cct_k; rest
 name = "red"; lumens; watts; colour
 [[luminaire.emitters]]
 name = "blue"; lumens; watts; xy
+[daemon]
+listen #> "::1"; rest
 [[bus]]
 name; driver; rest; priority = 100
 [[bus]]
