@@ -46,7 +46,7 @@ const ask = (page, method, route, body) => page.evaluate(async ([how, where, wha
 async function logIn(page, name, password = `password of ${name}`) {
   await page.getByLabel('Name').fill(name);
   await page.getByLabel('Password').fill(password);
-  await page.getByRole('button', { name: 'Log in' }).click();
+  await page.getByRole('button', { name: 'Log in', exact: true }).click();
 }
 
 let browser;
@@ -60,9 +60,11 @@ try {
     const { page, misdeeds, close } = await openPage(browser, url);
     await page.waitForSelector('#login:not([hidden])');
     assert.deepEqual((await ask(page, 'GET', '/api/status')).code, 401);
+    await eventually('the blackout button says to log in', async () => /Log in first/.test(await page.locator('#blackout').innerText()));
+    assert.ok(!(await page.locator('#blackout').isEnabled()), 'nobody is there who may');
     if (role === 'look') {
       await logIn(page, name, 'wrong');
-      await eventually('a wrong password is told', async () => /wrong name or password/.test(await page.locator('#login-wrong').innerText()));
+      await eventually('a wrong password is told', async () => /wrong name or password/.test(await page.locator('#login-wrong').innerText()) || (await page.locator('#login-wrong').innerText()), 30000);
       for (const [size, width] of [['phone', 390], ['tablet', 820], ['desktop', 1280]]) {
         await page.setViewportSize({ width, height: 900 });
         await fitsItsWidth(page);
@@ -71,9 +73,9 @@ try {
       }
     }
     await logIn(page, name);
-    await page.waitForSelector('body.ready');
-    await eventually('the form is gone', () => page.locator('#login').isHidden());
-    await eventually('it says who is here', async () => (await page.locator('#who').textContent()) === `You are ${name}, and may ${role}.`);
+    await page.waitForSelector('body.ready', { timeout: 30000 });
+    await eventually('the form is gone', () => page.locator('#login').isHidden(), 30000);
+    await eventually('it says who is here', async () => (await page.locator('#who').textContent()) === `You are ${name}, and may ${role}.`, 10000);
 
     const blackout = page.locator('#blackout');
     const may = role !== 'look';
@@ -87,9 +89,9 @@ try {
     assert.equal(reload.code, role === 'configure' ? 200 : 403, JSON.stringify(reload));
     if (may) {
       await blackout.click();
-      await eventually('one touch takes all light off', async () => (await ask(page, 'GET', '/api/status')).body.blackout === true);
+      await eventually('one touch takes all light off', async () => (await ask(page, 'GET', '/api/status')).body.blackout === true, 10000);
       await blackout.click();
-      await eventually('and brings it back', async () => (await ask(page, 'GET', '/api/status')).body.blackout === false);
+      await eventually('and brings it back', async () => (await ask(page, 'GET', '/api/status')).body.blackout === false, 10000);
       const changes = (await ask(page, 'GET', '/api/changes')).body;
       const held = changes.filter((one) => one.did === 'POST /api/level').at(-1);
       assert.equal(held.who, name);

@@ -371,9 +371,9 @@ export async function fetchChanges(): Promise<Change[]|undefined> {
 }
 
 /** Resolves with the daemon's answer once it has acknowledged; rejects with a sentence for a person. */
-async function post(route: string, body: Fields): Promise<Fields> {
+async function post(route: string, body: Fields, within_ms = 3000): Promise<Fields> {
   const stop = new AbortController();
-  const timer = setTimeout(() => stop.abort(), 3000);
+  const timer = setTimeout(() => stop.abort(), within_ms);
   try {
     const answer = await fetch(route, {
       method: 'POST',
@@ -385,7 +385,7 @@ async function post(route: string, body: Fields): Promise<Fields> {
     if (!answer.ok) throw new Error(text(said['error']) || `the daemon answered ${answer.status}`);
     return said;
   } catch (error) {
-    if (stop.signal.aborted) throw new Error('the daemon did not answer within 3 s');
+    if (stop.signal.aborted) throw new Error(`the daemon did not answer within ${within_ms / 1000} s`);
     if (error instanceof TypeError) throw new Error('the daemon cannot be reached');
     throw error;
   } finally {
@@ -394,7 +394,7 @@ async function post(route: string, body: Fields): Promise<Fields> {
 }
 
 export async function postLogin(name: string, password: string): Promise<void> {
-  await post('/api/login', {name, password});
+  await post('/api/login', {name, password}, 20_000);  // its hash is slow by intent, and made at low priority
 }
 export async function postLogout(): Promise<void> { await post('/api/logout', {}); }
 

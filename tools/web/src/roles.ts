@@ -10,11 +10,13 @@ interface Gate {
   show(may: boolean, why: string): void;
 }
 const gates: Gate[] = [];
-let present: {role: Role; name: string}|undefined;  // until the daemon has said it, nothing is held back
+// Until the daemon has said it, nothing is held back. null: nobody has logged in.
+let present: {role: Role; name: string}|null|undefined;
 
 export const roleOf = (text: string): Role => ORDER.find((role) => role === text) ?? 'look';
 
 function tell(gate: Gate): void {
+  if (present === null) return gate.show(false, 'Log in first.');
   const may = !present || ORDER.indexOf(present.role) >= ORDER.indexOf(gate.needs);
   gate.show(may, may ? '' : `${present!.name} may ${present!.role}; this is for those who may ${gate.needs}.`);
 }
@@ -22,6 +24,12 @@ function tell(gate: Gate): void {
 export function permit(role: Role, name: string): void {
   if (present?.role === role && present.name === name) return;
   present = {role, name};
+  gates.forEach(tell);
+}
+
+/** Nobody has logged in. */
+export function permitNothing(): void {
+  present = null;
   gates.forEach(tell);
 }
 

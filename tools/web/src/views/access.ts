@@ -3,7 +3,7 @@
 import {fetchChanges, fetchSession, postLogin, postLogout, type Change, type Session} from '../api';
 import {Rows, element, foldingCard, setText} from '../dom';
 import type {Line} from '../live';
-import {permit} from '../roles';
+import {permit, permitNothing} from '../roles';
 
 const SHOWN = 10;
 const CHANGES_EVERY_MS = 5000;
@@ -76,7 +76,10 @@ export class AccessView {
     setText(this.who, session.open ? `You are ${session.name}, and may ${session.role}.` : '');
     setText(this.problem, session.problem);
     this.leave.hidden = !session.open || !session.login;
-    if (session.open) permit(session.role, session.name);
+    if (session.open)
+      permit(session.role, session.name);
+    else if (session.login)
+      permitNothing();
   }
 
   private async showChanges(): Promise<void> {
