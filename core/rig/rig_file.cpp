@@ -1,15 +1,30 @@
 #include "core/rig/rig_file.h"
 
+#include <arpa/inet.h>
 #include <fmt/format.h>
+#include <netinet/in.h>
 
 #include <algorithm>
 #include <fstream>
 
 #include "core/rig/reading/rig_reader.h"
 #include "core/text/nearest.h"
+#include "core/text/plain_text.h"
 
 namespace luxrig {
 namespace {
+
+enum class Reach { loopback, beyond_loopback };
+/// Of an address in digits; nullopt if it is none.
+std::optional<Reach> reach_of(const std::string& address) {
+  in_addr four{};
+  in6_addr six{};
+  if (::inet_pton(AF_INET, address.c_str(), &four) == 1)
+    return ntohl(four.s_addr) >> 24 == 127 ? Reach::loopback : Reach::beyond_loopback;
+  if (::inet_pton(AF_INET6, address.c_str(), &six) == 1)
+    return IN6_IS_ADDR_LOOPBACK(&six) ? Reach::loopback : Reach::beyond_loopback;
+  return std::nullopt;
+}
 
 constexpr std::size_t kMaxRigBytes = std::size_t{16} << 20;
 
@@ -109,6 +124,32 @@ void RigReader::read_settings() {
   each(root, "daemon", [&](Section& s) {
     rig.daemon.in_file = s.in_file();
     s.read("http_port", rig.daemon.http_port);
+    // Not read_file(): a rig is checked on other computers, too, and these files stay on one.
+    const auto read_path = [&](const char* key, std::filesystem::path& path) {
+      std::string written;
+      if (s.read(key, written)) path = folder / written;
+    };
+    DaemonSpec& d = rig.daemon;
+    read_path("accounts", d.accounts_file);
+    read_path("tls_certificate", d.tls_certificate_file);
+    read_path("tls_key", d.tls_key_file);
+    s.read("behind_proxy", d.behind_proxy);
+    if (d.tls_certificate_file.empty() != d.tls_key_file.empty())
+      problems.add(s.in_file(), "a certificate and its key belong together", "give both tls_certificate and tls_key");
+    if (d.behind_proxy && d.accounts_file.empty())
+      problems.add(s.place_of("behind_proxy"), "behind a proxy, nobody but this computer's user could log in",
+                   "name a file with accounts = \"accounts.json\"");
+    if (s.read("listen", d.listen)) {
+      const auto reach = reach_of(d.listen);
+      if (!reach)
+        problems.add(s.place_of("listen"), fmt::format("{} is no address in digits", in_quotes(d.listen)),
+                     "write one of this computer, such as 192.168.1.5, or 0.0.0.0 for all");
+      if (reach == Reach::beyond_loopback && (d.accounts_file.empty() || d.tls_certificate_file.empty()))
+        problems.add(s.place_of("listen"),
+                     fmt::format("beyond this computer, at {}, the page needs accounts and a certificate", d.listen),
+                     "name files with accounts, tls_certificate and tls_key; behind a proxy on this computer leave "
+                     "listen out");
+    }
     s.read("park_at_end", rig.daemon.park_at_end);
   });
 }

@@ -50,7 +50,8 @@ cpSync(source('tests/rigs/room'), rig, { recursive: true });
 const text = readFileSync(path.join(rig, 'rig.toml'), 'utf8');
 const rests = text.replace(/^(pan_range_deg = .*)$/m, '$1\npark_pan_deg = 0\npark_tilt_deg = 0');
 assert.notEqual(rests, text);
-writeFileSync(path.join(rig, 'rig.toml'), rests);
+writeFileSync(path.join(rig, 'rig.toml'), rests.replace('[daemon]', '[daemon]\naccounts = "accounts.json"'));
+execFileSync(luxrig, ['accounts', rig, 'add', 'a-1', '--role', 'look'], { input: 'correct horse\n' });
 const plan = path.join(folder, 'plan.json');
 execFileSync(luxrig, ['solve', rig, '-o', plan, '--max-error', '0.05']);
 const daemon = spawn(luxrig, ['run', rig, '--sim', '--port', '0', '--max-error', '0.05'], { env: { ...process.env, XDG_RUNTIME_DIR: folder } });
@@ -191,6 +192,7 @@ try {
     'POST /api/question': [{ ...question, fixture: fixtures[0], level: 0.5, known_to: 0.1, known_to_worst: 0.2, withdrawn: false }, { id: 'a-1', withdrawn: true }, question],
     'POST /api/answer': [{ id: 'a-1', what: 'reading', lux: 182.5 }],
     'POST /api/jobs': [{ kind: 'solve' }],
+    'POST /api/login': [{ name: 'a-1', password: 'correct horse' }],
   };
   for (const { operation, schema } of operations) {
     const what = `${operation.method.toUpperCase()} ${operation.path}`;

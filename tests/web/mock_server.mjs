@@ -37,6 +37,9 @@ export class MockDaemon {
   posts = []; // bodies of accepted posts
   silent = false; // the line stays open without data
   unknown = false; // the browser has no access, and gets no events
+  who = { name: 'this computer\'s user', role: 'configure' }; // while it is known
+  accounts = {}; // by name: { password, role }; none: nobody can log in
+  changes = []; // GET /api/changes
   refuse = false; // posts are answered with 503
   scripted = false;
   scene = sceneGlb(); // GET /api/scene; undefined: the rig has none
@@ -159,6 +162,14 @@ export class MockDaemon {
     return json(200, { asked: true, ...(answer ? { answer } : {}) });
   }
 
+  #logInOrOut(route, { name, password }, json) {
+    if (route === '/api/login' && this.accounts[name]?.password !== password) return json(401, { error: 'wrong name or password' });
+    this.unknown = route === '/api/logout';
+    if (this.unknown) for (const stream of this.#streams) stream.destroy();
+    if (!this.unknown) this.who = { name, role: this.accounts[name].role };
+    return json(200, this.unknown ? { logged_out: true } : this.who);
+  }
+
   #answerQuestion({ id, ...answer }, json) {
     if (this.question?.id !== id) return json(409, { error: 'this is not asked any more' });
     const before = this.question.answer;
@@ -196,8 +207,9 @@ export class MockDaemon {
     if (request.method === 'POST') {
       let body = '';
       for await (const part of request) body += part;
-      if (!['/api/blackout', '/api/level', '/api/goal', '/api/release', '/api/question', '/api/answer'].includes(url.pathname)) return json(404, {});
+      if (!['/api/blackout', '/api/level', '/api/goal', '/api/release', '/api/question', '/api/answer', '/api/login', '/api/logout'].includes(url.pathname)) return json(404, {});
       if (request.headers['content-type'] !== 'application/json') return json(415, {});
+      if (url.pathname.startsWith('/api/log')) return this.#logInOrOut(url.pathname, JSON.parse(body), json);
       if (this.refuse) return json(503, {});
       this.posts.push({ path: url.pathname, body: JSON.parse(body) });
       const { body: asked } = this.posts.at(-1);
@@ -209,7 +221,9 @@ export class MockDaemon {
     }
     switch (url.pathname) {
       case '/api/session':
-        return json(200, { open: !this.unknown });
+        return json(200, { open: !this.unknown, login: Object.keys(this.accounts).length > 0, ...(this.unknown ? {} : this.who) });
+      case '/api/changes':
+        return json(200, this.changes);
       case '/api/status':
         return json(200, this.status());
       case '/api/room':

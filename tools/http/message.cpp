@@ -1,6 +1,9 @@
 #include "tools/http/message.h"
 
+#include <arpa/inet.h>
+
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <filesystem>
 #include <fstream>
@@ -18,17 +21,45 @@ std::string small_letters(std::string_view text) {
   return small;
 }
 
-/// "name" or "name:port" of this machine's loopback.
-bool is_loopback_host(std::string_view host) {
-  for (const std::string_view name : {"127.0.0.1", "localhost", "[::1]"}) {
-    if (host.substr(0, name.size()) != name) continue;
-    const std::string_view rest = host.substr(name.size());
-    if (rest.empty()) return true;
-    if (rest[0] == ':' && rest.size() >= 2 && rest.size() <= 6 &&
-        std::all_of(rest.begin() + 1, rest.end(), [](char c) { return c >= '0' && c <= '9'; }))
-      return true;
-  }
-  return false;
+/// "name", "name:port" or "[address]:port" without the port; empty if it is none of them.
+std::string_view without_port(std::string_view host) {
+  const std::size_t bracket = host.substr(0, 1) == "[" ? host.find(']') : 0;
+  if (bracket == std::string_view::npos) return "";
+  const std::size_t colon = host.find(':', bracket);
+  if (colon == std::string_view::npos) return host;
+  const std::string_view port = host.substr(colon + 1);
+  const bool is_port = !port.empty() && port.size() <= 5 &&
+                       std::all_of(port.begin(), port.end(), [](char c) { return c >= '0' && c <= '9'; });
+  return is_port ? host.substr(0, colon) : "";
+}
+
+/// In the form of inet_ntop(); empty if it is none.
+std::string address_in(std::string_view text) {
+  std::array<unsigned char, 16> bytes{};
+  std::array<char, INET6_ADDRSTRLEN> out{};
+  const std::string whole(text);
+  for (const int family : {AF_INET, AF_INET6})
+    if (::inet_pton(family, whole.c_str(), bytes.data()) == 1)
+      return ::inet_ntop(family, bytes.data(), out.data(), out.size()) ? out.data() : "";
+  return "";
+}
+
+bool is_our_name(std::string_view host, const HttpNames& names) {
+  const std::string_view name = without_port(host);
+  if (name.empty()) return false;
+  if (name == "127.0.0.1" || name == "localhost" || name == "[::1]") return true;
+  const bool bracketed = name.front() == '[' && name.back() == ']';
+  const std::string address = address_in(bracketed ? name.substr(1, name.size() - 2) : name);
+  if (!address.empty() && (names.any_address || address == names.listens_at)) return true;
+  return std::any_of(names.of_certificate.begin(), names.of_certificate.end(), [&](const std::string& known) {
+    if (known.substr(0, 2) != "*.") return name == known || (!address.empty() && address == known);
+    const std::size_t dot = name.find('.');
+    return dot != 0 && dot != std::string_view::npos && name.substr(dot) == std::string_view(known).substr(1);
+  });
+}
+
+bool is_loopback_address(const std::string& address) {
+  return address == "::1" || (address.rfind("127.", 0) == 0 && address_in(address) == address);
 }
 
 int hex_digit(char c) {
@@ -119,17 +150,36 @@ HttpResponse static_file(const std::string& folder, std::string_view path) {
   return response;
 }
 
-std::optional<HttpResponse> foreign_request(const HttpRequest& request, bool has_body) {
+void hear_proxy(HttpRequest& request) {
+  std::optional<std::string_view> said;
+  for (const auto& [name, value] : request.headers)
+    if (name == "x-forwarded-for") said = value;  // some proxies add a header, others to the client's
+  if (!said || !is_loopback_address(request.from)) return;
+  request.proxied = true;
+  std::string_view last = said->substr(said->rfind(',') + 1);  // npos + 1 is 0
+  last.remove_prefix(std::min(last.size(), last.find_first_not_of(' ')));
+  if (const std::string address = address_in(last); !address.empty()) request.from = address;
+  request.secure = request.header("x-forwarded-proto") == "https";
+  if (const auto host = request.header("x-forwarded-host")) {
+    const std::string named(*host);
+    for (auto& [name, value] : request.headers)
+      if (name == "host") value = named;
+  }
+}
+
+std::optional<HttpResponse> foreign_request(const HttpRequest& request, bool has_body, const HttpNames& names) {
   std::vector<std::string> hosts, types;
   for (const auto& [name, value] : request.headers) {
     if (name == "host") hosts.push_back(small_letters(value));
     if (name == "content-type") types.push_back(small_letters(value));
   }
-  if (hosts.size() != 1 || !is_loopback_host(hosts[0]))
-    return http_refusal(403, "only reachable by its loopback address");
+  if (hosts.size() != 1 || (!request.proxied && !is_our_name(hosts[0], names)))
+    return http_refusal(403, names.any_address
+                                 ? "not reachable by this name: use a name that its certificate has, or its address"
+                                 : "only reachable by its loopback address");
+  const std::string origin = (request.secure ? "https://" : "http://") + hosts[0];
   for (const auto& [name, value] : request.headers) {
-    if (name == "origin" && small_letters(value) != "http://" + hosts[0])
-      return http_refusal(403, "refused from another origin");
+    if (name == "origin" && small_letters(value) != origin) return http_refusal(403, "refused from another origin");
     // Another port of loopback is the same site, but another program.
     if (name == "sec-fetch-site" && value != "same-origin" && value != "none")
       return http_refusal(403, "refused from another site: type the address, or open it from the terminal");

@@ -11,11 +11,21 @@ namespace luxrig {
 
 using HttpHeaders = std::vector<std::pair<std::string, std::string>>;
 
+/// Who sends a request.
+struct HttpSender {
+  std::string credential;  ///< tells senders apart; empty = unknown
+  std::string name{};      ///< for a person
+  int rank = 0;            ///< what it may do: a route says which rank it needs
+};
+
 struct HttpRequest {
   std::string method, path, query;  ///< path and query as received, not decoded
   HttpHeaders headers;              ///< names in lower case
   std::string body;
-  std::string credential;  ///< the sender, from HttpServerOptions::credential; empty = unknown
+  HttpSender sender;     ///< from HttpServerOptions::sender
+  std::string from;      ///< address of the peer, or of the client that the proxy states; "socket" of the Unix socket
+  bool secure = false;   ///< it came by https
+  bool proxied = false;  ///< through a reverse proxy on this computer: hear_proxy()
 
   /// The first header of that name (in lower case).
   [[nodiscard]] std::optional<std::string_view> header(std::string_view name) const;
@@ -42,9 +52,24 @@ struct HttpResponse {
 /// A regular file below the folder by a request's path, with index.html for "/"; 404 for anything else.
 [[nodiscard]] HttpResponse static_file(const std::string& folder, std::string_view path);
 
+/// Takes the word of a reverse proxy on this computer, a peer from loopback that sends X-Forwarded-For: `from` is the
+/// last address in it, the one that the proxy itself saw; `secure` is whether X-Forwarded-Proto is https; X-Forwarded-Host
+/// stands for Host.
+void hear_proxy(HttpRequest& request);
+
+/// By which a server is reached, beside the names of loopback.
+struct HttpNames {
+  std::string listens_at{};                   ///< its address; empty: all of this computer
+  std::vector<std::string> of_certificate{};  ///< in small letters; "*.museum.example" has one more part before it
+  bool any_address = false;                   ///< any address in digits: it listens beyond loopback
+};
+
 /// Why a request is refused, whatever its path: a page of another site must not reach this program through the browser.
-/// Host has to be a loopback name (against DNS rebinding), Origin the requested origin itself, Sec-Fetch-Site the same
-/// origin or none. A body has to be JSON: a browser sends that to another origin only with that origin's permission.
-[[nodiscard]] std::optional<HttpResponse> foreign_request(const HttpRequest& request, bool has_body);
+/// Host has to be one of our names (against DNS rebinding: an address in digits is no name, so nobody can make it lead
+/// elsewhere), Origin the requested origin itself, Sec-Fetch-Site the same origin or none. What came through a proxy has
+/// the name that the proxy answers to. A body has to be JSON: a browser sends that to another origin only with that
+/// origin's permission.
+[[nodiscard]] std::optional<HttpResponse> foreign_request(const HttpRequest& request, bool has_body,
+                                                          const HttpNames& names = {});
 
 }  // namespace luxrig

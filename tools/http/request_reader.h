@@ -34,6 +34,7 @@ class RequestReader {
   /// There were bytes beyond this request: close the connection after the answer.
   [[nodiscard]] bool more_came() const;
   [[nodiscard]] const HttpRequest& request() const { return request_; }
+  [[nodiscard]] HttpRequest& request() { return request_; }
   [[nodiscard]] HttpRequest take() { return std::move(request_); }
   [[nodiscard]] const HttpResponse& refusal() const { return refusal_; }
 

@@ -1,34 +1,31 @@
 #include "tools/http/server.h"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
-#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <boost/asio/generic/stream_protocol.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/local/stream_protocol.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
-#include <boost/asio/write.hpp>
-#include <condition_variable>
-#include <deque>
-#include <mutex>
+#include <limits>
 #include <thread>
 
+#include "core/check.h"
+#include "tools/http/lane.h"
 #include "tools/http/request_reader.h"
+#include "tools/http/wire_stream.h"
 
 namespace luxrig {
 namespace {
 
 namespace asio = boost::asio;
 using boost::system::error_code;
-using Socket = asio::generic::stream_protocol::socket;
+using Socket = WireStream::Socket;
 using SteadyClock = std::chrono::steady_clock;
 using Instant = SteadyClock::time_point;
 using std::chrono::milliseconds;
@@ -37,71 +34,12 @@ constexpr std::size_t kMaxConnections = 64;  // of TCP, and as many again of the
 constexpr std::size_t kMaxStreams = 16, kMaxStreamsOfOne = 8;
 constexpr std::size_t kLargeBodyBytes = 64u << 10;
 constexpr int kMaxLargeBodies = 2;  // at once: bodies are held in memory whole
+constexpr int kMaxSlow = 4;
+constexpr int kAllRanks = std::numeric_limits<int>::max();
 constexpr milliseconds kIdle{15000}, kHead{5000}, kBody{10000}, kLargeBody{30000}, kAnswer{5000}, kDrain{1000};
 constexpr milliseconds kTick{100};
 constexpr int kTicksPerEvent = 2;
-constexpr int kLowPriority = 10;
 constexpr int kNotModified = 304;
-
-/// Linux keeps the nice value per thread.
-void lower_priority() { ::setpriority(PRIO_PROCESS, static_cast<id_t>(::syscall(SYS_gettid)), kLowPriority); }
-
-/// Handlers on some threads, each running one after the other. A connection waits for its answer, so the queue is never
-/// longer than the number of connections.
-class Lane {
- public:
-  Lane(int threads, bool low_priority) {
-    for (int i = 0; i < threads; ++i) {
-      threads_.emplace_back([this, low_priority] {
-        if (low_priority) lower_priority();
-        run();
-      });
-    }
-  }
-  ~Lane() { stop(); }
-  void push(std::function<void()> job) {
-    {
-      const std::lock_guard lock(mutex_);
-      if (stopped_) return;
-      jobs_.push_back(std::move(job));
-    }
-    wake_.notify_one();
-  }
-  /// Drops queued handlers and waits for running ones.
-  void stop() {
-    std::deque<std::function<void()>> dropped;
-    {
-      const std::lock_guard lock(mutex_);
-      stopped_ = true;
-      dropped.swap(jobs_);
-    }
-    wake_.notify_all();
-    for (std::thread& thread : threads_)
-      if (thread.joinable()) thread.join();
-  }
-
- private:
-  void run() {
-    std::unique_lock lock(mutex_);
-    while (true) {
-      wake_.wait(lock, [this] { return stopped_ || !jobs_.empty(); });
-      if (stopped_) return;
-      {
-        const auto job = std::move(jobs_.front());
-        jobs_.pop_front();
-        lock.unlock();
-        job();
-      }
-      lock.lock();
-    }
-  }
-
-  std::mutex mutex_;
-  std::condition_variable wake_;
-  std::deque<std::function<void()>> jobs_;
-  bool stopped_ = false;
-  std::vector<std::thread> threads_;
-};
 
 const char* phrase_of(int status) {
   switch (status) {
@@ -129,6 +67,8 @@ const char* phrase_of(int status) {
       return "Content Too Large";
     case 415:
       return "Unsupported Media Type";
+    case 429:
+      return "Too Many Requests";
     case 431:
       return "Request Header Fields Too Large";
     case 503:
@@ -154,6 +94,17 @@ bool is_ours(Socket& socket) {
          (peer.uid == 0 || peer.uid == ::geteuid());
 }
 
+/// Of the peer; empty if it has gone. An IPv4 address in the form of IPv6 is the IPv4 address.
+std::string address_of(const asio::ip::tcp::socket& socket) {
+  error_code gone;
+  auto address = socket.remote_endpoint(gone).address();
+  if (gone) return "";
+  if (address.is_v6() && address.to_v6().is_v4_mapped())
+    address = asio::ip::make_address_v4(asio::ip::v4_mapped, address.to_v6());
+  return address.to_string();
+}
+std::string address_of(const asio::local::stream_protocol::socket&) { return ""; }
+
 }  // namespace
 
 struct HttpServer::State {
@@ -167,13 +118,15 @@ struct HttpServer::State {
 
   template <class Acceptor>
   void accept(Acceptor& acceptor, bool trusted);
-  void admit(Socket socket, bool trusted);
+  void admit(Socket socket, bool trusted, std::string from);
   void remove(const std::shared_ptr<Connection>& connection);
   void tick();
   void tell_streams();
   [[nodiscard]] bool stream_is_free(const std::string& credential) const;
 
   HttpServerOptions options;
+  HttpNames names;                         // by which it is reached
+  std::shared_ptr<const TlsIdentity> tls;  // of new connections by TCP; null: they are plain
   const HttpRoute* events = nullptr;  // null if no route is a stream
   std::string headers;
   asio::io_context io{1};  // one thread uses everything below, except the lanes
@@ -182,11 +135,11 @@ struct HttpServer::State {
   std::string socket_file;
   asio::steady_timer timer{io};
   std::vector<std::shared_ptr<Connection>> connections;
-  int large_bodies = 0;
+  int large_bodies = 0, slow_ones = 0;
   int ticks = 0;
   bool ticking = false, event_wanted = false;
 
-  Lane urgent{1, false}, looking{2, true}, changing{2, true};
+  Lane urgent{1, false}, looking{2, true}, changing{2, true}, slow{1, true};
   std::thread thread;
 };
 
@@ -195,16 +148,30 @@ class HttpServer::State::Connection : public std::enable_shared_from_this<Connec
  public:
   enum class Doing { waits, reads_body, is_handled, answers, drains, streams };
 
-  Connection(State& server, Socket socket, bool trusted)
-      : server_(server), socket_(std::move(socket)), trusted_(trusted) {}
+  Connection(State& server, Socket socket, bool trusted, std::string from)
+      : server_(server),
+        stream_(std::move(socket), trusted ? nullptr : server.tls),
+        trusted_(trusted),
+        from_(std::move(from)) {}
 
   [[nodiscard]] Doing doing() const { return doing_; }
   [[nodiscard]] bool trusted() const { return trusted_; }
   [[nodiscard]] Instant since() const { return since_; }
-  [[nodiscard]] const std::string& credential() const { return credential_; }
+  [[nodiscard]] const HttpSender& sender() const { return sender_; }
   /// No request of its own is being handled; it may be closed in favour of a new connection.
   [[nodiscard]] bool has_nothing() const {
     return doing_ == Doing::waits || doing_ == Doing::reads_body || doing_ == Doing::drains;
+  }
+
+  void begin() {
+    since_ = SteadyClock::now();
+    deadline_ = since_ + kHead;
+    stream_.begin([self = this->shared_from_this()](error_code error) {
+      if (self->closed_) return;
+      if (!error) return self->await_request();
+      if (!self->stream_.peer_speaks_plain_http(error)) return self->close();
+      self->answer(http_refusal(400, "this port speaks https: begin the address with https://"), true);
+    });
   }
 
   void await_request() {
@@ -224,22 +191,22 @@ class HttpServer::State::Connection : public std::enable_shared_from_this<Connec
     if (closed_) return;
     closed_ = true;
     free_body();
-    error_code ignored;
-    socket_.close(ignored);
+    stream_.close();
     server_.remove(shared_from_this());
   }
 
   void send_event(const std::shared_ptr<const std::string>& text) {
     if (closed_ || writing_) return;  // a slow reader misses some events
+    // Not again for the Unix socket, which never asked.
+    if (!trusted_ && server_.options.still && !server_.options.still(sender_)) return close();
     write(text, [](Connection& self) { self.deadline_.reset(); });
   }
 
  private:
   void read() {
-    socket_.async_read_some(asio::buffer(buffer_), [self = this->shared_from_this()](error_code error, std::size_t n) {
+    stream_.read_some(asio::buffer(buffer_), [self = this->shared_from_this()](error_code error, std::size_t n) {
       if (self->closed_) return;
       if (error) return self->close();
-      if (self->doing_ == Doing::drains) return self->read();
       self->take({self->buffer_.data(), n});
     });
   }
@@ -267,8 +234,11 @@ class HttpServer::State::Connection : public std::enable_shared_from_this<Connec
 
   /// Every check that is possible before the body is read.
   std::optional<HttpResponse> decide() {
-    const HttpRequest& request = reader_->request();
-    if (auto refusal = foreign_request(request, reader_->has_body())) return refusal;
+    HttpRequest& request = reader_->request();
+    request.from = from_;
+    request.secure = stream_.secure();
+    if (server_.options.behind_proxy) hear_proxy(request);
+    if (auto refusal = foreign_request(request, reader_->has_body(), server_.names)) return refusal;
     head_only_ = request.method == "HEAD";
     const std::string method = head_only_ ? "GET" : request.method;
     const HttpServerOptions& options = server_.options;
@@ -287,9 +257,14 @@ class HttpServer::State::Connection : public std::enable_shared_from_this<Connec
                         : http_refusal(404, options.no_route ? options.no_route(request.path)
                                                              : "there is no route " + request.path);
     }
-    credential_ = trusted_ ? "socket" : options.credential ? options.credential(request) : "anybody";
-    if (credential_.empty() && !page && !route_->for_anybody) return http_refusal(401, options.no_credential);
-    if (events_ && !server_.stream_is_free(credential_)) return http_refusal(503, "too many pages are open");
+    sender_ = trusted_         ? HttpSender{"socket", "", kAllRanks}
+              : options.sender ? options.sender(request)
+                               : HttpSender{"anybody", "", kAllRanks};
+    if (!page && sender_.rank < route_->rank) {
+      return options.not_for ? options.not_for(sender_, *route_)
+                             : http_refusal(sender_.credential.empty() ? 401 : 403, "not allowed");
+    }
+    if (events_ && !server_.stream_is_free(sender_.credential)) return http_refusal(503, "too many pages are open");
     const std::size_t most = route_ ? route_->max_body_bytes : 0;
     const bool large = most > kLargeBodyBytes && reader_->has_body();
     if (large && server_.large_bodies >= kMaxLargeBodies)
@@ -319,15 +294,21 @@ class HttpServer::State::Connection : public std::enable_shared_from_this<Connec
     deadline_.reset();
     const auto& handler = route_ ? route_->handle : server_.options.page;
     auto request = std::make_shared<HttpRequest>(reader_->take());
-    request->credential = credential_;
+    request->sender = sender_;
     reader_.reset();
+    const bool is_slow = route_ && route_->slow;
+    if (is_slow && server_.slow_ones >= kMaxSlow)
+      return answer(http_refusal(503, "others ask for it just now: try again"), true);
+    if (is_slow) ++server_.slow_ones;
     Lane& lane = route_ && route_->urgent                 ? server_.urgent
+                 : is_slow                                ? server_.slow
                  : request->method == "GET" || head_only_ ? server_.looking
                                                           : server_.changing;
-    lane.push([self = this->shared_from_this(), &handler, request]() mutable {
+    lane.push([self = this->shared_from_this(), &handler, request, is_slow]() mutable {
       const auto response = std::make_shared<HttpResponse>(called(handler, *request));
       request.reset();
-      asio::post(self->server_.io, [self, response] {
+      asio::post(self->server_.io, [self, response, is_slow] {
+        if (is_slow) --self->server_.slow_ones;
         self->free_body();
         if (!self->closed_) self->answer(*response, !self->keep_alive_);
       });
@@ -355,10 +336,15 @@ class HttpServer::State::Connection : public std::enable_shared_from_this<Connec
     since_ = SteadyClock::now();
     deadline_ = since_ + kDrain;
     reader_.reset();
-    error_code error;
-    socket_.shutdown(Socket::shutdown_send, error);
-    if (error) return close();
-    read();
+    stream_.end([self = this->shared_from_this()](error_code error) {
+      if (!self->closed_) error ? self->close() : self->read_to_end();
+    });
+  }
+
+  void read_to_end() {
+    stream_.read_raw(asio::buffer(buffer_), [self = this->shared_from_this()](error_code error, std::size_t) {
+      if (!self->closed_) error ? self->close() : self->read_to_end();
+    });
   }
 
   void stream() {
@@ -377,24 +363,24 @@ class HttpServer::State::Connection : public std::enable_shared_from_this<Connec
   void write(std::shared_ptr<const std::string> text, Then then, bool timed = true) {
     if (timed) deadline_ = SteadyClock::now() + kAnswer;
     writing_ = true;
-    asio::async_write(socket_, asio::buffer(*text),
-                      [self = this->shared_from_this(), text, then](error_code error, std::size_t) {
-                        self->writing_ = false;
-                        if (self->closed_) return;
-                        if (error) return self->close();
-                        then(*self);
-                      });
+    stream_.write(asio::buffer(*text), [self = this->shared_from_this(), text, then](error_code error, std::size_t) {
+      self->writing_ = false;
+      if (self->closed_) return;
+      if (error) return self->close();
+      then(*self);
+    });
   }
 
   State& server_;
-  Socket socket_;
+  WireStream stream_;
   const bool trusted_;
+  const std::string from_;
   Doing doing_ = Doing::waits;
   Instant since_{};  // start of the wait for a request, or for the end
   std::optional<Instant> deadline_;
   std::unique_ptr<RequestReader> reader_;
   const HttpRoute* route_ = nullptr;
-  std::string credential_;
+  HttpSender sender_;
   bool events_ = false, head_only_ = false, keep_alive_ = false, has_large_body_ = false, writing_ = false, closed_ = false;
   std::array<char, 16384> buffer_;
 };
@@ -408,12 +394,13 @@ void HttpServer::State::accept(Acceptor& acceptor, bool trusted) {
       later->async_wait([this, &acceptor, trusted, later](error_code) { accept(acceptor, trusted); });
       return;
     }
-    admit(Socket(std::move(socket)), trusted);
+    std::string from = trusted ? "socket" : address_of(socket);
+    admit(Socket(std::move(socket)), trusted, std::move(from));
     accept(acceptor, trusted);
   });
 }
 
-void HttpServer::State::admit(Socket socket, bool trusted) {
+void HttpServer::State::admit(Socket socket, bool trusted, std::string from) {
   if (trusted && !is_ours(socket)) return;
   std::size_t count = 0;
   std::shared_ptr<Connection> idlest;
@@ -426,8 +413,8 @@ void HttpServer::State::admit(Socket socket, bool trusted) {
     if (!idlest) return;
     idlest->close();
   }
-  connections.push_back(std::make_shared<Connection>(*this, std::move(socket), trusted));
-  connections.back()->await_request();
+  connections.push_back(std::make_shared<Connection>(*this, std::move(socket), trusted, std::move(from)));
+  connections.back()->begin();
   if (!ticking) tick();
 }
 
@@ -467,7 +454,7 @@ bool HttpServer::State::stream_is_free(const std::string& credential) const {
   for (const auto& connection : connections) {
     if (connection->doing() != Connection::Doing::streams) continue;
     ++all;
-    if (connection->credential() == credential) ++of_this;
+    if (connection->sender().credential == credential) ++of_this;
   }
   return all < kMaxStreams && of_this < kMaxStreamsOfOne;
 }
@@ -475,10 +462,14 @@ bool HttpServer::State::stream_is_free(const std::string& credential) const {
 HttpServer::HttpServer(HttpServerOptions options) : state_(std::make_unique<State>(std::move(options))) {}
 HttpServer::~HttpServer() { stop(); }
 
-std::optional<int> HttpServer::bind(int port) {
+std::optional<int> HttpServer::bind(int port, const std::string& address) {
   auto& acceptor = state_->tcp;
-  const asio::ip::tcp::endpoint endpoint(asio::ip::address_v4::loopback(), static_cast<unsigned short>(port));
   error_code error;
+  const auto where = asio::ip::make_address(address, error);
+  if (error) return std::nullopt;
+  state_->names.listens_at = where.is_unspecified() ? "" : where.to_string();
+  state_->names.any_address = !where.is_loopback();
+  const asio::ip::tcp::endpoint endpoint(where, static_cast<unsigned short>(port));
   acceptor.open(endpoint.protocol(), error);
   // Not SO_REUSEPORT: two servers must not share a port.
   if (!error) acceptor.set_option(asio::socket_base::reuse_address(true), error);
@@ -512,7 +503,16 @@ Result<void> HttpServer::bind_socket(const std::string& file) {
   return {};
 }
 
+void HttpServer::use(std::shared_ptr<const TlsIdentity> identity) {
+  const auto take = [state = state_.get(), identity = std::move(identity)] {
+    state->names.of_certificate = identity->hosts();
+    state->tls = identity;
+  };
+  state_->thread.joinable() ? asio::post(state_->io, take) : take();
+}
+
 void HttpServer::start() {
+  LUXRIG_CHECK(!state_->names.any_address || state_->tls, "beyond loopback without TLS");
   state_->thread = std::thread([state = state_.get()] {
     lower_priority();
     if (state->tcp.is_open()) state->accept(state->tcp, false);
@@ -535,7 +535,7 @@ void HttpServer::stop() {
     });
     state.thread.join();
   }
-  for (Lane* lane : {&state.urgent, &state.looking, &state.changing}) lane->stop();
+  for (Lane* lane : {&state.urgent, &state.looking, &state.changing, &state.slow}) lane->stop();
   if (!state.socket_file.empty()) ::unlink(state.socket_file.c_str());
   state.socket_file.clear();
 }

@@ -1,4 +1,4 @@
-// apply, page, reload, blackout, hand-back, park, bypass, identify: commands that only send a request to a running
+// apply, page, log, reload, blackout, hand-back, park, bypass, identify: commands that only send a request to a running
 // daemon.
 #include <fmt/format.h>
 
@@ -63,6 +63,45 @@ Action declare_page(CLI::App& command) {
   return [told] { return print_page(told->client); };
 }
 
+/// One line for each change: when, who, from where, what, old -> new.
+std::string line_of_change(const json& change) {
+  std::string line = fmt::format("{}  {}", text_of(change, "at"), text_of(change, "who"));
+  if (const std::string from = text_of(change, "from"); !from.empty() && from != "socket") line += " (" + from + ")";
+  line += "  " + text_of(change, "did");
+  const auto dumped = [](const json& value) { return value.dump(-1, ' ', false, json::error_handler_t::replace); };
+  if (const auto changed = change.find("changed"); changed != change.end() && changed->is_object()) {
+    for (const auto& [what, pair] : changed->items())
+      if (pair.is_array() && pair.size() == 2)
+        line += fmt::format("  {} {} -> {}", what, dumped(pair[0]), dumped(pair[1]));
+  } else if (const auto asked = change.find("asked"); asked != change.end()) {
+    line += "  " + dumped(*asked);
+  }
+  return line;
+}
+
+int print_log(const ClientArguments& arguments) {
+  const auto daemon = daemon_on(arguments.port, arguments.token);
+  if (!daemon) return report_unreachable(daemon.error());
+  const auto answer = http_get(*daemon, "/api/changes");
+  if (!answer || answer->status != 200) return report_unreachable(no_daemon(arguments.port));
+  if (arguments.json) {
+    fmt::print("{}\n", answer->body);
+    return kExitOk;
+  }
+  const auto changes = json::parse(answer->body, nullptr, false);
+  if (!changes.is_array() || changes.empty()) fmt::print("nothing was changed yet\n");
+  if (changes.is_array())
+    for (const json& change : changes)
+      if (change.is_object()) fmt::print("{}\n", line_of_change(change));
+  return kExitOk;
+}
+
+Action declare_log(CLI::App& command) {
+  const Told told = std::make_shared<TellArguments>();
+  add_client(command, told->client);
+  return [told] { return print_log(told->client); };
+}
+
 Action declare_blackout(CLI::App& command) {
   const Told told = std::make_shared<TellArguments>();
   command.add_option("STATE", told->state, "on if left out")->check(one_of({"on", "off"}));
@@ -124,6 +163,8 @@ Action declare_identify(CLI::App& command) {
 const Command kApplyCommand{"apply", command_group::kRun, "have the running daemon fade to a plan", declare_apply};
 const Command kPageCommand{"page", command_group::kRun, "an address that opens the daemon's page in one browser, once",
                            declare_page};
+const Command kLogCommand{"log", command_group::kRun, "who changed what, from where, and what it was before",
+                          declare_log};
 const Command kReloadCommand{"reload", command_group::kRun,
                              "have the daemon read its rig file again, whole or not at all", declare_reload};
 const Command kBlackoutCommand{"blackout", command_group::kRun, "all light off at once; `blackout off` lifts it",

@@ -16,11 +16,12 @@ constexpr Command kTestCommand{"test", command_group::kRun, "scenarios on the si
 
 const std::vector<Command>& command_table() {
   static const std::vector<Command> table = {
-      kInitCommand,    kCheckCommand,  kImportCommand,   kPaintCommand,     kEvaluateCommand, kSolveCommand,
-      kRenderCommand,  kRunCommand,    kApplyCommand,    kStatusCommand,    kLevelCommand,    kGoalCommand,
-      kReleaseCommand, kParkCommand,   kBlackoutCommand, kHandBackCommand,  kReloadCommand,   kPageCommand,
-      kMonitorCommand, kBypassCommand, kTestCommand,     kDevicesCommand,   kRdmCommand,      kIdentifyCommand,
-      kCameraCommand,  kRecordCommand, kReplayCommand,   kCalibrateCommand, kBenchCommand,    kCompletionCommand,
+      kInitCommand,     kCheckCommand,      kImportCommand,   kPaintCommand,    kEvaluateCommand, kSolveCommand,
+      kRenderCommand,   kRunCommand,        kApplyCommand,    kStatusCommand,   kLevelCommand,    kGoalCommand,
+      kReleaseCommand,  kParkCommand,       kBlackoutCommand, kHandBackCommand, kReloadCommand,   kPageCommand,
+      kAccountsCommand, kLogCommand,        kMonitorCommand,  kBypassCommand,   kTestCommand,     kDevicesCommand,
+      kRdmCommand,      kIdentifyCommand,   kCameraCommand,   kRecordCommand,   kReplayCommand,   kCalibrateCommand,
+      kBenchCommand,    kCompletionCommand,
   };
   return table;
 }

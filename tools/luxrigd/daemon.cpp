@@ -43,6 +43,7 @@ Daemon::Daemon(std::shared_ptr<const Session> session, const KeptLight& light, D
     : options_(std::move(options)),
       controller_(session->rig, light.model, light.joints),
       journal_(options_.state_folder),
+      change_log_(options_.state_folder),
       session_(std::move(session)),
       version_(version_of(session_->rig, session_->scene)),
       jobs_(options_.state_folder ? std::optional(*options_.state_folder / "plans") : std::nullopt) {}
@@ -63,7 +64,9 @@ Result<int> Daemon::start() {
   Result<int> port = 0;
   if (!stepped) {
     http_ = std::make_unique<HttpApi>(handlers(), web_folder());
-    port = http_->start(options_.http_port);
+    DaemonSpec where = session_->rig.daemon;
+    where.http_port = options_.http_port;
+    port = http_->start(where);
     if (!port) return port;
     lock_memory();
   }
@@ -325,6 +328,9 @@ StatusInput Daemon::input_of(const PublishedStatus& status) {
 
 HttpHandlers Daemon::handlers() {
   HttpHandlers handlers;
+  handlers.settings = [this] { return settings_of(journal_.state()); };
+  handlers.record = [this](nlohmann::json change) { change_log_.add(std::move(change)); };
+  handlers.change_log = [this] { return change_log_.newest(); };
   handlers.status = [this]() -> std::string {
     const auto last = published();
     return last ? status_json(input_of(*last)) : "{}";

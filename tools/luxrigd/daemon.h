@@ -23,6 +23,7 @@
 #include "tools/luxrigd/guardian/guardian.h"
 #include "tools/luxrigd/hand_question.h"
 #include "tools/luxrigd/rig_file_watch.h"
+#include "tools/luxrigd/state/change_log.h"
 #include "tools/luxrigd/state/journal.h"
 #include "tools/luxrigd/state/light_store.h"
 
@@ -81,6 +82,9 @@ class Daemon {
 
   /// Why commands will not find this daemon; empty if all is well.
   [[nodiscard]] std::string unreachable() const { return http_ ? http_->unreachable() : std::string(); }
+
+  /// Why nobody can log in although there are accounts; empty if all is well.
+  [[nodiscard]] std::string accounts_problem() const { return http_ ? http_->problem() : std::string(); }
 
   /// One turn of the control loop; call every 20 ms or so.
   void tick();
@@ -177,6 +181,7 @@ class Daemon {
   std::vector<std::unique_ptr<BusThread>> buses_;
   std::unique_ptr<HttpApi> http_;
   Journal journal_;
+  ChangeLog change_log_;
   std::optional<Guardian> guardian_;
   std::string unguarded_;
   std::optional<Time> unguarded_since_, stood_still_at_;

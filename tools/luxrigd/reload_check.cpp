@@ -131,6 +131,15 @@ std::vector<Problem> needs_a_restart(const Rig& running, const Rig& changed, boo
   if (same_zones && !changed.keep_outs.empty() && !same_light)
     needs(changed.keep_outs.front().in_file, "where things hang beside a [[keep_out]]");
   if (running.daemon.http_port != changed.daemon.http_port) needs(changed.daemon.in_file, "http_port of [daemon]");
+  const DaemonSpec &was = running.daemon, &is = changed.daemon;
+  const std::pair<const char*, bool> reached[] = {
+      {"listen", was.listen == is.listen},
+      {"accounts", was.accounts_file == is.accounts_file},
+      {"tls_certificate", was.tls_certificate_file == is.tls_certificate_file},
+      {"tls_key", was.tls_key_file == is.tls_key_file},
+      {"behind_proxy", was.behind_proxy == is.behind_proxy}};
+  for (const auto& [key, is_same] : reached)
+    if (!is_same) needs(is.in_file, fmt::format("{} of [daemon]", key));
   if (running.calibrated_on != changed.calibrated_on) needs({1, 1}, "which rig calibration.json was measured on");
   // Limits decide whether a desk may turn heads.
   if (listens_to_desks(changed) && has_limits(running) != has_limits(changed))

@@ -323,6 +323,8 @@ int run_rig(const RunArguments& arguments) {
   say.say("page and status: " + daemon.page_address() + " (opens one browser; luxrig page prints another)");
   if (const std::string why = daemon.unreachable(); !why.empty())
     say.say("warning  the page is served, but luxrig status, blackout and the other commands will not find this daemon: " + why);
+  if (const std::string why = daemon.accounts_problem(); !why.empty())
+    say.say("warning  nobody can log in with an account: " + why);
   if (!daemon.unguarded().empty()) {
     say.say("warning  if this process dies, lamps do what they do without data: no guardian: " + daemon.unguarded());
   }

@@ -109,15 +109,20 @@ constexpr KeySpec kControlKeys[] = {
      "whether a device that was lost and is back starts so, too, as it does where losses are power cuts. It is dark "
      "first, then, even if it had held its light"},
 
-    {"daemon",
-     "http_port",
-     whole_number,
-     "",
-     "9620",
-     {1, 65535},
-     "",
-     "1234",
-     "port of the page and the API, on loopback"},
+    {"daemon", "http_port", whole_number, "", "9620", {1, 65535}, "", "1234", "port of the page and the API"},
+    {"daemon", "listen", text, "", R"("127.0.0.1")", kAny, "", R"("0.0.0.0")",
+     "address of this computer at which the page is served, in digits; any but loopback needs `accounts`, "
+     "`tls_certificate` and `tls_key`; 0.0.0.0 or :: is all of them"},
+    {"daemon", "accounts", text, "", kNone, kAny, "", R"("accounts.json")",
+     "file of people and scripts who may use the daemon, and in which role; `luxrig accounts` writes it, mode 600"},
+    {"daemon", "tls_certificate", text, "", kNone, kAny, "", R"("page.pem")",
+     "PEM file: the certificate of the names by which the page is reached, then those that lead to its issuer"},
+    {"daemon", "tls_key", text, "", kNone, kAny, "", R"("page-key.pem")",
+     "PEM file: its key, which others may not read"},
+    {"daemon", "behind_proxy", yes_no, "", "false", kAny, "", "true",
+     "whether a reverse proxy on this computer serves the page to others: its X-Forwarded-For and X-Forwarded-Proto "
+     "are "
+     "believed; needs `accounts`"},
     {"daemon", "park_at_end", yes_no, "", "false", kAny, "", "true",
      "whether heads go dark and to where they rest before the daemon ends in order"},
 };

@@ -128,8 +128,9 @@ std::string dump(const Rig& rig) {
     add(static_cast<int>(d.sky), d.general_type, d.horizontal_lx, d.sun_normal_lx, text_of(d.towards_sun_world));
   }
   add(rig.safe.level, rig.safe.hold_s, rig.safe.fade_s, static_cast<int>(rig.safe.scope), rig.safe.on_meter_loss,
-      rig.daemon.http_port, rig.daemon.park_at_end, rig.startup.stage_s, text_of(rig.startup.max_watts_per_s),
-      rig.startup.after_loss);
+      rig.daemon.http_port, rig.daemon.listen, rig.daemon.accounts_file.string(),
+      rig.daemon.tls_certificate_file.string(), rig.daemon.tls_key_file.string(), rig.daemon.behind_proxy,
+      rig.daemon.park_at_end, rig.startup.stage_s, text_of(rig.startup.max_watts_per_s), rig.startup.after_loss);
   return out;
 }
 

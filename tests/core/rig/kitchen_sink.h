@@ -58,6 +58,8 @@ name = "tunable"; model = "isotropic"
 name = "warm white"; lumens
 [[luminaire.emitters]]
 name = "cool white"; lumens
+[daemon]
+listen #> "::1"; rest
 [[bus]]
 name; driver; rest; priority = 100
 [[bus]]

@@ -60,5 +60,49 @@ TEST(HttpMessage, ARouteWithANameInBracesHasPathsWithOneMorePart) {
   EXPECT_EQ(last_part("7"), "7");
 }
 
+HttpRequest from(const std::string& address, HttpHeaders headers) {
+  HttpRequest request;
+  request.from = address;
+  request.headers = std::move(headers);
+  hear_proxy(request);
+  return request;
+}
+
+TEST(HttpMessage, AProxyOnThisComputerIsBelievedAndNobodyElse) {
+  const HttpHeaders proxied = {
+      {"host", "rig.example"}, {"x-forwarded-for", "10.0.0.7"}, {"x-forwarded-proto", "https"}};
+  const HttpRequest request = from("127.0.0.1", proxied);
+  EXPECT_EQ(request.from, "10.0.0.7");
+  EXPECT_TRUE(request.secure && request.proxied);
+  EXPECT_FALSE(foreign_request(request, false)) << "the proxy's own name";
+  const HttpRequest elsewhere = from("10.0.0.9", proxied);
+  EXPECT_EQ(elsewhere.from, "10.0.0.9");
+  EXPECT_FALSE(elsewhere.secure || elsewhere.proxied);
+  EXPECT_TRUE(foreign_request(elsewhere, false));
+  EXPECT_FALSE(from("127.0.0.1", {{"host", "localhost"}, {"x-forwarded-proto", "https"}}).secure) << "not by the proxy";
+}
+
+TEST(HttpMessage, OfForwardedAddressesTheOneThatTheProxySawCounts) {
+  EXPECT_EQ(from("127.0.0.1", {{"x-forwarded-for", "1.2.3.4, 10.0.0.7"}}).from, "10.0.0.7");
+  EXPECT_EQ(from("::1", {{"x-forwarded-for", "1.2.3.4"}, {"x-forwarded-for", "2001:DB8::7"}}).from, "2001:db8::7");
+  for (const char* none : {"", "unknown", "10.0.0.7:80", "10.0.0.7,", "_hidden"})
+    EXPECT_EQ(from("127.0.0.1", {{"x-forwarded-for", none}}).from, "127.0.0.1") << none;
+}
+
+TEST(HttpMessage, ThroughAProxyTheOriginHasToBeTheOneThatWasAsked) {
+  const auto refused = [](const char* origin) {
+    return foreign_request(from("127.0.0.1", {{"host", "127.0.0.1:9620"},
+                                              {"x-forwarded-host", "rig.example"},
+                                              {"x-forwarded-for", "10.0.0.7"},
+                                              {"x-forwarded-proto", "https"},
+                                              {"origin", origin}}),
+                           false)
+        .has_value();
+  };
+  EXPECT_FALSE(refused("https://rig.example"));
+  for (const char* other : {"http://rig.example", "https://evil.example", "http://127.0.0.1:9620", "null"})
+    EXPECT_TRUE(refused(other)) << other;
+}
+
 }  // namespace
 }  // namespace luxrig

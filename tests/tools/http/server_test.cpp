@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <filesystem>
 #include <fstream>
@@ -61,7 +62,7 @@ std::string post(const std::string& path, const std::string& body, const std::st
 
 HttpRoute stream_of(const std::string& event) {
   return {"GET", "/events", [event](const HttpRequest&) { return HttpResponse{200, "text/event-stream", event}; },
-          0,     false,     false,
+          0,     false,     1,
           true};
 }
 
@@ -345,17 +346,21 @@ TEST(HttpServer, RequiresACredentialOnItsPortButNotOnItsUnixSocket) {
   HttpServerOptions options;
   options.routes = {{"GET", "/who",
                      [](const HttpRequest& request) {
-                       return HttpResponse{200, "text/plain", request.credential};
+                       return HttpResponse{200, "text/plain", request.sender.credential};
                      }},
                     {"GET", "/open",
                      [](const HttpRequest& request) {
-                       return HttpResponse{200, "text/plain", "for anybody" + request.credential};
+                       return HttpResponse{200, "text/plain", "for anybody" + request.sender.credential};
                      },
-                     0, false, true},
+                     0, false, 0},
+                    {"POST", "/done", [](const HttpRequest&) { return HttpResponse{}; }, 16u << 10, false, 2},
                     stream_of("data: 1\n\n")};
   options.page = [](const HttpRequest&) { return HttpResponse{200, "text/plain", "the page"}; };
-  options.credential = [](const HttpRequest& request) {
-    return std::string(request.header("authorization") == "Bearer right" ? "known" : "");
+  options.sender = [](const HttpRequest& request) {
+    const auto given = request.header("authorization");
+    return given == "Bearer right"  ? HttpSender{"known", "anna", 1}
+           : given == "Bearer more" ? HttpSender{"more", "otto", 2}
+                                    : HttpSender{};
   };
   HttpServer server(std::move(options));
   const auto port = server.bind(0);
@@ -372,11 +377,70 @@ TEST(HttpServer, RequiresACredentialOnItsPortButNotOnItsUnixSocket) {
   EXPECT_EQ(http_get(peer, "/who")->status, 401);
   peer.token = "right";
   EXPECT_EQ(http_get(peer, "/who")->body, "known");
+  EXPECT_EQ(http_post_json(peer, "/done", "{}")->status, 403) << "known, but of too low a rank";
+  peer.token = "more";
+  EXPECT_EQ(http_post_json(peer, "/done", "{}")->status, 200);
   HttpPeer by_socket{"", 0, file};
   EXPECT_TRUE(http_listens(file));
   EXPECT_EQ(http_get(by_socket, "/who")->body, "socket");
   server.stop();
   EXPECT_FALSE(http_listens(file));
+}
+
+TEST(HttpServer, AStreamEndsWithTheAccessOfItsReader) {
+  std::atomic<bool> may{true};
+  HttpServerOptions options;
+  options.routes = {stream_of("data: 1\n\n")};
+  options.sender = [](const HttpRequest&) { return HttpSender{"anna", "anna", 1}; };
+  options.still = [&](const HttpSender& sender) { return sender.credential == "anna" && may; };
+  HttpServer server(std::move(options));
+  const auto port = server.bind(0);
+  ASSERT_TRUE(port);
+  server.start();
+  Wire wire(*port);
+  ASSERT_TRUE(wire.send("GET /events HTTP/1.1\r\nHost: localhost\r\n\r\n"));
+  EXPECT_NE(wire.receive(kAnswered, "data: 1\n\n").find("data: 1"), std::string::npos);
+  may = false;
+  (void)wire.receive(kAnswered);
+  EXPECT_TRUE(wire.ended());
+}
+
+TEST(HttpServer, SlowRequestsRunOneByOneAndAFewWait) {
+  std::atomic<int> running{0}, most{0}, done{0};
+  std::atomic<bool> go_on{false};
+  HttpServerOptions options;
+  options.routes = {{"POST", "/slow",
+                     [&](const HttpRequest&) {
+                       most = std::max<int>(most, ++running);
+                       while (!go_on) std::this_thread::yield();
+                       --running;
+                       ++done;
+                       return HttpResponse{};
+                     },
+                     1024, false, 1, false, true},
+                    {"POST", "/quick", [](const HttpRequest&) { return HttpResponse{}; }}};
+  HttpServer server(std::move(options));
+  const auto port = server.bind(0);
+  ASSERT_TRUE(port);
+  server.start();
+  std::vector<Wire> wires;
+  for (int i = 0; i < 4; ++i) {
+    wires.emplace_back(*port);
+    ASSERT_TRUE(wires.back().send(post("/slow", "{}")));
+  }
+  // Until the server has come to all four, the fifth could be one of them.
+  std::string fifth;
+  for (bool refused = false; !refused;) {
+    Wire wire(*port);
+    ASSERT_TRUE(wire.send(post("/slow", "{}")));
+    fifth = wire.receive(100ms, "\r\n\r\n");
+    refused = !fifth.empty();
+  }
+  EXPECT_EQ(status_of(fifth), 503) << fifth;
+  EXPECT_EQ(http_post_json({"127.0.0.1", *port}, "/quick", "{}")->status, 200) << "others need not wait";
+  go_on = true;
+  for (Wire& wire : wires) EXPECT_EQ(status_of(wire.receive(kAnswered, "\r\n\r\n")), 200);
+  EXPECT_EQ(most, 1);
 }
 
 }  // namespace

@@ -34,6 +34,7 @@ class Wire {
   Wire(Wire&& other) noexcept : socket_(std::exchange(other.socket_, -1)), connected_(other.connected_) {}
   Wire& operator=(Wire&&) = delete;
 
+  [[nodiscard]] int descriptor() const { return socket_; }
   [[nodiscard]] bool connected() const { return connected_; }
   bool send(const std::string& bytes) const {
     for (std::size_t at = 0; at < bytes.size();) {

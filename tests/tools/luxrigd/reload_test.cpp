@@ -95,6 +95,7 @@ TEST_F(RoomThatChanges, OnlyOutputChangesNeedARestart) {
         std::tuple{"destination = \"127.0.0.1\"", "destination = \"127.0.0.2\"", "[[bus]] \"dmx\""},
         std::tuple{"lux_per_count = 0.001", "lux_per_count = 0.01", "[[luxmeter]] \"meter-1\""},
         std::tuple{"http_port = 9620", "http_port = 9621", "http_port of [daemon]"},
+        std::tuple{"http_port = 9620", "accounts = \"a.json\"", "accounts of [daemon]"},
         std::tuple{"name = \"room\"", "name = \"hall\"", "the rig's name"}}) {
     const std::string text = refused(from, to);
     EXPECT_NE(text.find(what), std::string::npos) << to << ": " << text;

@@ -109,7 +109,11 @@ HttpResponse job_answer(const std::optional<Job>& job) {
 
 namespace answer_to {
 
-HttpResponse session(Handlers handlers, Request request) { return dumped_answer({{"open", handlers.knows(request)}}); }
+HttpResponse session(Handlers handlers, Request request) { return handlers.session(request); }
+HttpResponse login(Handlers handlers, Request request) { return handlers.login(request); }
+HttpResponse logout(Handlers handlers, Request request) { return handlers.logout(request); }
+
+HttpResponse change_log(Handlers handlers, Request) { return json_answer(handlers.change_log()); }
 
 HttpResponse new_address(Handlers handlers, Request) {
   return dumped_answer({{"address", handlers.one_time_address()}});

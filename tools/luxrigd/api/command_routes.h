@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,8 +21,11 @@ namespace luxrig {
 
 /// The daemon's handlers. They are called from the server's threads; each must be safe to call from any thread.
 struct HttpHandlers {
-  std::function<bool(const HttpRequest&)> knows;  ///< who asks has access; HttpApi sets it
-  std::function<std::string()> one_time_address;  ///< HttpApi sets it
+  std::function<HttpResponse(const HttpRequest&)> session, login, logout;  ///< AccessRoutes sets them
+  std::function<std::string()> one_time_address;                           ///< HttpApi sets it
+  std::function<nlohmann::json()> settings;                                ///< settings_of() what is in force
+  std::function<void(nlohmann::json change)> record;                       ///< ChangeLog::add()
+  std::function<std::string()> change_log;                                 ///< ChangeLog::newest()
   std::function<std::string()> status;     ///< JSON
   std::function<std::string(const std::string& version)> changes;  ///< JSON: the status since that version
   std::function<std::string()> universes;  ///< JSON
@@ -73,7 +77,10 @@ using Handlers = const HttpHandlers&;
 using Request = const HttpRequest&;
 
 [[nodiscard]] HttpResponse session(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse login(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse logout(Handlers handlers, Request request);
 [[nodiscard]] HttpResponse new_address(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse change_log(Handlers handlers, Request request);
 [[nodiscard]] HttpResponse status(Handlers handlers, Request request);
 /// The body is one server-sent event.
 [[nodiscard]] HttpResponse events(Handlers handlers, Request request);

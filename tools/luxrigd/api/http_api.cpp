@@ -1,28 +1,23 @@
 #include "tools/luxrigd/api/http_api.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <condition_variable>
+#include <thread>
+
 #include "tools/http/server.h"
-#include "tools/luxrigd/api/access.h"
+#include "tools/luxrigd/api/access_routes.h"
 #include "tools/luxrigd/api/route_table.h"
+#include "tools/luxrigd/scheduling.h"
 #include "tools/process/meeting_place.h"
 #include "tools/process/runtime_folder.h"
+#include "tools/process/secret_file.h"
 
 namespace luxrig {
 namespace {
 
-/// Writes a file that only our user can read and that is whole at any time.
-Result<void> write_secret(const std::filesystem::path& file, const std::string& text) {
-  const std::string aside = file.string() + ".new";
-  ::unlink(aside.c_str());
-  const int to = ::open(aside.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
-  const bool written = to >= 0 && ::write(to, text.data(), text.size()) == static_cast<ssize_t>(text.size());
-  if (to >= 0) ::close(to);
-  if (written && ::rename(aside.c_str(), file.c_str()) == 0) return {};
-  return tl::unexpected(Fault{Cause::system, {}, fmt::format("{} cannot be written", file.string()), {}});
-}
+constexpr std::chrono::seconds kLookAtFilesEvery{1};
 
 }  // namespace
 
@@ -33,7 +28,14 @@ struct HttpApi::State {
   std::string address;
   std::filesystem::path token;
   std::string unreachable;
+  DaemonSpec where;
+  mutable std::mutex mutex;  // guards the two below
+  std::string accounts_problem, tls_problem;
   std::optional<HttpServer> server;
+  std::shared_ptr<const Accounts> accounts;            // in use; after start() of `watching` alone, as are the next two
+  std::shared_ptr<const TlsIdentity> identity_in_use;  // null: plain
+  std::string identity_pem;
+  std::jthread watching;
 
   [[nodiscard]] std::string one_time_address() { return address + "?open=" + access.one_time_code(); }
 
@@ -41,14 +43,13 @@ struct HttpApi::State {
   HttpResponse page(const HttpRequest& request) {
     if (request.path != "/") return static_file(web_folder, request.path);
     if (const auto code = request.parameter("open")) {
-      const bool known = !access.credential(request).empty();
       const auto session = access.open(*code);
-      if (!session && !known) {
+      if (!session && request.sender.rank == 0) {
         return {403, "text/plain; charset=utf-8",
                 "This address has been used, or is older than ten minutes. luxrig page prints a new one.\n"};
       }
       HttpResponse response{303, "text/plain", {}, {{"Location", "/"}, {"Cache-Control", "no-store"}}};
-      if (session) response.headers.emplace_back("Set-Cookie", access.cookie(*session));
+      if (session) response.headers.emplace_back("Set-Cookie", access.cookie(*session, request.secure));
       return response;
     }
     if (std::error_code none; !std::filesystem::is_directory(web_folder, none)) {
@@ -59,16 +60,16 @@ struct HttpApi::State {
 
   [[nodiscard]] HttpServerOptions options() {
     HttpServerOptions options;
-    handlers.knows = [this](const HttpRequest& request) {
-      return !request.credential.empty() || !access.credential(request).empty();
-    };
+    add_access_handlers(handlers, access, [this] { return problem(); });
     handlers.one_time_address = [this] { return one_time_address(); };
     options.routes = http_routes(handlers);
     options.page = [this](const HttpRequest& request) { return page(request); };
-    options.credential = [this](const HttpRequest& request) { return access.credential(request); };
-    options.no_credential =
-        "the daemon does not know who asks: open its page with the address that luxrig page prints; a program sends "
-        "Authorization: Bearer and the daemon's token";
+    options.sender = [this](const HttpRequest& request) { return access.sender(request); };
+    options.still = [this](const HttpSender& sender) { return access.still(sender); };
+    options.not_for = [this](const HttpSender& sender, const HttpRoute& route) {
+      return not_for_sender(sender, route.rank, access.has_accounts());
+    };
+    options.behind_proxy = where.behind_proxy;
     options.headers = {{"X-Content-Type-Options", "nosniff"},
                        {"X-Frame-Options", "DENY"},
                        {"Referrer-Policy", "no-referrer"},
@@ -77,30 +78,103 @@ struct HttpApi::State {
                         "frame-ancestors 'none'"}};
     return options;
   }
+
+  [[nodiscard]] std::string problem() const {
+    const std::lock_guard lock(mutex);
+    return accounts_problem.empty() || tls_problem.empty() ? accounts_problem + tls_problem
+                                                           : accounts_problem + "\n" + tls_problem;
+  }
+
+  /// Accounts that cannot be read are nobody's: who wrote them last may have meant to take somebody's away.
+  void read_accounts_again() {
+    auto read = read_accounts(where.accounts_file);
+    Accounts wanted = read ? std::move(*read) : Accounts();
+    {
+      const std::lock_guard lock(mutex);
+      accounts_problem = read ? "" : read.error().front().text();
+    }
+    if (accounts && accounts->people == wanted.people && accounts->tokens == wanted.tokens) return;
+    accounts = std::make_shared<const Accounts>(std::move(wanted));
+    access.use(accounts);
+  }
+
+  /// A certificate that cannot be read leaves the one before: it is renewed while the daemon runs.
+  Result<void> read_identity_again() {
+    constexpr std::size_t kMost = 1u << 20;
+    auto identity = [&]() -> Checked<std::shared_ptr<const TlsIdentity>> {
+      // A group may read the key, as Debian's ssl-cert does.
+      auto certificate = read_secret(where.tls_certificate_file, kMost, 0022);
+      auto key = read_secret(where.tls_key_file, kMost, 0027);
+      if (!certificate) return tl::unexpected(std::move(certificate.error()));
+      if (!key) return tl::unexpected(std::move(key.error()));
+      const std::string both = *certificate + *key;
+      if (identity_in_use && both == identity_pem) return identity_in_use;
+      auto made =
+          TlsIdentity::make(*certificate, *key, where.tls_certificate_file.string(), where.tls_key_file.string());
+      if (made) identity_pem = both;
+      return made;
+    }();
+    {
+      const std::lock_guard lock(mutex);
+      tls_problem = identity ? "" : identity.error().front().text();
+    }
+    if (!identity) return refusal(identity.error().front().text());
+    if (*identity != identity_in_use) server->use(identity_in_use = *identity);
+    return {};
+  }
+
+  /// Again and again, on a thread of its own: a slow disk delays nobody.
+  void watch_files() {
+    watching = std::jthread([this](const std::stop_token& stop) {
+      make_background();
+      std::mutex asleep;
+      std::condition_variable_any end;
+      std::unique_lock lock(asleep);
+      while (!end.wait_for(lock, stop, kLookAtFilesEvery, [&] { return stop.stop_requested(); })) {
+        if (!where.accounts_file.empty()) read_accounts_again();
+        if (!where.tls_certificate_file.empty()) (void)read_identity_again();
+      }
+    });
+  }
+
+  /// How a browser on this computer gets there.
+  [[nodiscard]] std::string address_of(int port) const {
+    std::string host = where.listen == "0.0.0.0" ? "127.0.0.1" : where.listen == "::" ? "::1" : where.listen;
+    if (host.find(':') != std::string::npos) host = "[" + host + "]";
+    if (!identity_in_use) return fmt::format("http://{}:{}/", host, port);
+    for (const std::string& known : identity_in_use->hosts())
+      if (known.find('*') == std::string::npos && known.find(':') == std::string::npos)
+        return fmt::format("https://{}:{}/", known, port);
+    return fmt::format("https://{}:{}/", host, port);
+  }
 };
 
 HttpApi::HttpApi(HttpHandlers handlers, std::filesystem::path web_folder) : state_(std::make_unique<State>()) {
   state_->handlers = std::move(handlers);
   state_->web_folder = web_folder.string();
-  state_->server.emplace(state_->options());
 }
 
 HttpApi::~HttpApi() { stop(); }
 
-Result<int> HttpApi::start(int port) {
+Result<int> HttpApi::start(const DaemonSpec& where) {
+  state_->where = where;
+  state_->server.emplace(state_->options());
   HttpServer& server = *state_->server;
-  const auto bound = server.bind(port);
+  if (!where.tls_certificate_file.empty())
+    if (const auto read = state_->read_identity_again(); !read) return tl::unexpected(read.error());
+  const auto bound = server.bind(where.http_port, where.listen);
   if (!bound) {
-    return tl::unexpected(
-        Fault{Cause::system,
-              {},
-              fmt::format("port {} of 127.0.0.1 is taken, perhaps by another luxrig: stop that, or give --port", port),
-              {}});
+    return refusal(
+        fmt::format("port {0} of {1} cannot be had: another luxrig has it (stop that, or give --port), or "
+                    "this computer does not have the address",
+                    where.http_port, where.listen));
   }
+  if (!where.accounts_file.empty()) state_->read_accounts_again();
   // The owner of the port also owns the socket and token of that name.
   if (const auto met = meet(*bound); !met) state_->unreachable = met.error().detail;
   state_->access.set_port(*bound);
-  state_->address = fmt::format("http://127.0.0.1:{}/", *bound);
+  state_->address = state_->address_of(*bound);
+  if (!where.accounts_file.empty() || !where.tls_certificate_file.empty()) state_->watch_files();
   server.start();
   return *bound;
 }
@@ -118,12 +192,15 @@ Result<void> HttpApi::meet(int port) {
   return write_secret(state_->token, state_->access.token() + "\n");
 }
 
+std::string HttpApi::problem() const { return state_->problem(); }
+
 const std::string& HttpApi::unreachable() const { return state_->unreachable; }
 
 std::string HttpApi::one_time_address() { return state_->one_time_address(); }
 
 void HttpApi::stop() {
-  state_->server->stop();
+  state_->watching = {};
+  if (state_->server) state_->server->stop();
   if (!state_->token.empty()) ::unlink(state_->token.c_str());
   state_->token.clear();
 }

@@ -4,12 +4,14 @@
 
 #include "tools/luxrig/calibrate/hand_answer.h"
 #include "tools/luxrigd/api/command_limits.h"
+#include "tools/luxrigd/api/recorded.h"
 
 namespace luxrig {
 namespace {
 
 using namespace schema;
 
+constexpr const char* kAccountName = "^[0-9A-Za-z._@-]{1,64}$";
 constexpr const char* kQuestionId = "^[0-9A-Za-z_-]{1,40}$";
 
 // Formats say of which kind a name is; the daemon refuses one that the rig does not have.
@@ -66,6 +68,8 @@ Schema answer_body() {
                  request({{"id", question_id()}, {"what", one_of_texts({"skip", "other_place", "end"})}})});
 }
 
+Schema role_name() { return one_of_texts({"look", "operate", "configure"}); }
+
 Schema done(const char* key) { return answer({{key, yes()}, {"text", text("for a person, in lines")}}); }
 
 ApiAnswer ok(Schema body, const char* what = "done") { return {200, what, std::move(body)}; }
@@ -85,6 +89,10 @@ ApiRoute kept(ApiRoute route) {
   route.kept = true;
   return route;
 }
+ApiRoute slow(ApiRoute route) {
+  route.slow = true;
+  return route;
+}
 ApiRoute with(std::vector<ApiParameter> parameters, ApiRoute route) {
   route.parameters = std::move(parameters);
   return route;
@@ -97,10 +105,35 @@ std::vector<ApiRoute> made_table() {
       {"GET",
        "/api/session",
        Role::anybody,
-       "whether the daemon knows who asks",
+       "who asks, and what they may do",
        none,
-       {ok(answer({{"open", yes_or_no()}}), "whether it does")},
+       {ok(answer({{"open", yes_or_no("the daemon knows who asks")},
+                   maybe("name", text()),
+                   maybe("role", role_name()),
+                   {"login", yes_or_no("it has accounts, with which one can log in")},
+                   maybe("problem", text("why the daemon does not use its newest accounts or certificate"))}),
+           "who it is")},
        answer_to::session},
+      slow({"POST",
+            "/api/login",
+            Role::anybody,
+            "opens this browser for a person with an account",
+            request({{"name", Schema{{"type", "string"}, {"pattern", kAccountName}}}, {"password", short_text(256)}}),
+            {ok(answer({{"name", text()}, {"role", role_name()}}), "open; with the session's cookie"),
+             refused(),
+             {401, "wrong name or password", ref("Refusal")},
+             {404, "this daemon has no accounts", ref("Refusal")},
+             {429, "too many wrong attempts: Retry-After says in how many seconds the next may come", ref("Refusal")},
+             {503, "others log in just now: try again", ref("Refusal")}},
+            answer_to::login,
+            kMaxShortBytes}),
+      {"POST",
+       "/api/logout",
+       look,
+       "ends this browser's session",
+       none,
+       {ok(answer({{"logged_out", yes()}}))},
+       answer_to::logout},
       {"POST",
        "/api/session",
        configure,
@@ -108,6 +141,13 @@ std::vector<ApiRoute> made_table() {
        none,
        {ok(answer({{"address", text()}}))},
        answer_to::new_address},
+      {"GET",
+       "/api/changes",
+       look,
+       "who changed what, from where: the newest 200, the newest last",
+       none,
+       {ok(list(ref("Change")), "a list of changes")},
+       answer_to::change_log},
       with({{"since", "version of an answer before, or nothing: the answer has what changed since, or all of it"}},
            {"GET",
             "/api/status",
@@ -310,11 +350,6 @@ std::vector<ApiRoute> made_table() {
 
 }  // namespace
 
-const char* name_of(Role role) {
-  constexpr const char* kNames[] = {"anybody", "look", "operate", "configure"};
-  return kNames[static_cast<std::size_t>(role)];
-}
-
 const std::vector<ApiRoute>& route_table() {
   static const std::vector<ApiRoute> table = made_table();
   return table;
@@ -323,7 +358,7 @@ const std::vector<ApiRoute>& route_table() {
 std::vector<ApiAnswer> common_refusals(const ApiRoute& route) {
   std::vector<ApiAnswer> all = {{400, "no HTTP request", ref("Refusal")}};
   if (route.role != Role::anybody) all.push_back({401, "the daemon does not know who asks", ref("Refusal")});
-  all.push_back({403, "from another host, origin or site", ref("Refusal")});
+  all.push_back({403, "from another host, origin or site, or of a role that may not", ref("Refusal")});
   all.push_back({405, "the route is not for this method", ref("Refusal")});
   all.push_back({413, "the body is too long", ref("Refusal")});
   all.push_back({415, "the body is not application/json", ref("Refusal")});
@@ -336,8 +371,8 @@ std::vector<HttpRoute> http_routes(HttpHandlers handlers) {
   std::vector<HttpRoute> routes;
   for (const ApiRoute& route : route_table())
     routes.push_back({route.method, route.path,
-                      [to, handle = route.handle](const HttpRequest& request) { return handle(*to, request); },
-                      route.max_body_bytes, route.urgent, route.role == Role::anybody, route.events});
+                      [to, &route](const HttpRequest& request) { return recorded(route, *to, request); },
+                      route.max_body_bytes, route.urgent, static_cast<int>(route.role), route.events, route.slow});
   return routes;
 }
 

@@ -6,18 +6,10 @@
 #include <vector>
 
 #include "tools/luxrigd/api/command_routes.h"
+#include "tools/luxrigd/api/role.h"
 #include "tools/luxrigd/api/schema.h"
 
 namespace luxrig {
-
-/// Who may use a route. Whoever has access may do all of them today.
-enum class Role {
-  anybody,    ///< even without access
-  look,       ///< reads
-  operate,    ///< changes the light
-  configure,  ///< changes what the rig is, or who has access
-};
-[[nodiscard]] const char* name_of(Role role);
 
 struct ApiAnswer {
   int status = 200;
@@ -35,7 +27,7 @@ struct ApiParameter {
 struct ApiRoute {
   const char* method;
   const char* path;
-  Role role;
+  Role role;            ///< the least that may use it
   const char* does;     ///< in one line
   schema::Schema body;  ///< of the request; null if none is read
   /// Those of its own. Each route has the refusals of common_refusals(), too.
@@ -46,6 +38,7 @@ struct ApiRoute {
   bool events = false;  ///< a stream of server-sent events
   std::vector<ApiParameter> parameters{};
   bool kept = false;  ///< has an ETag, and 304 for If-None-Match
+  bool slow = false;  ///< HttpRoute::slow
 };
 
 [[nodiscard]] const std::vector<ApiRoute>& route_table();

@@ -1,6 +1,8 @@
 /** The daemon's HTTP API (tools/luxrigd/API.md) as types, and the reading of it. What arrives is not trusted:
  *  a number that is missing or not finite becomes undefined, a list that is no list becomes empty. */
 
+import {roleOf, type Role} from './roles';
+
 export type Vec3 = readonly [number, number, number];
 
 export interface Fixture {
@@ -308,20 +310,70 @@ export async function fetchScene(): Promise<{glb: ArrayBuffer; etag: string}|'no
   return {glb: await answer.arrayBuffer(), etag: answer.headers.get('ETag') ?? ''};
 }
 
-/** Whether the daemon knows this browser; true also while it does not answer at all. */
-export async function isKnown(): Promise<boolean> {
+/** Who this browser is to the daemon. */
+export interface Session {
+  open: boolean;  // the daemon knows it
+  name: string;
+  role: Role;
+  login: boolean;   // there are accounts to log in with
+  problem: string;  // why the newest accounts or certificate are not used
+}
+
+/** Nothing while the daemon does not answer. */
+export async function fetchSession(): Promise<Session|undefined> {
   try {
     const answer = await fetch('/api/session', { cache: 'no-store' });
-    return !answer.ok || fieldsOf(await answer.json())['open'] !== false;
+    if (!answer.ok) return undefined;
+    const said = fieldsOf(await answer.json());
+    return {
+      open: said['open'] !== false,
+      name: text(said['name']),
+      role: roleOf(text(said['role']) || 'configure'),
+      login: said['login'] === true,
+      problem: text(said['problem'])
+    };
   } catch {
-    return true;
+    return undefined;
   }
 }
 
+/** A line of the log of changes. */
+export interface Change {
+  at: string;  // local time
+  who: string;
+  from: string;
+  what: string;  // for a person
+}
+
+const MAX_CHANGE_LETTERS = 300;
+
+export function readChange(value: unknown): Change {
+  const change = fieldsOf(value);
+  const at = new Date(text(change['at']));
+  const pairs = Object.entries(fieldsOf(change['changed'])).map(([what, pair]) => {
+    const [was, is] = Array.isArray(pair) ? pair : [];
+    return `${what} ${JSON.stringify(was ?? null)} → ${JSON.stringify(is ?? null)}`;
+  });
+  const asked = pairs.length || change['asked'] === undefined ? '' : ` ${JSON.stringify(change['asked'])}`;
+  const did = text(change['did']).replace(/^POST \/api\//, '').replace('/api/', '');
+  return {
+    at: Number.isNaN(at.getTime()) ? '' : at.toLocaleString(),
+    who: text(change['who']),
+    from: text(change['from']),
+    what: `${did}${asked}${pairs.length ? `: ${pairs.join(', ')}` : ''}`.slice(0, MAX_CHANGE_LETTERS)
+  };
+}
+
+export async function fetchChanges(): Promise<Change[]|undefined> {
+  const answer = await fetch('/api/changes', {cache: 'no-store'});
+  const said: unknown = answer.ok ? await answer.json() : undefined;
+  return Array.isArray(said) ? said.map(readChange) : undefined;
+}
+
 /** Resolves with the daemon's answer once it has acknowledged; rejects with a sentence for a person. */
-async function post(route: string, body: Fields): Promise<Fields> {
+async function post(route: string, body: Fields, within_ms = 3000): Promise<Fields> {
   const stop = new AbortController();
-  const timer = setTimeout(() => stop.abort(), 3000);
+  const timer = setTimeout(() => stop.abort(), within_ms);
   try {
     const answer = await fetch(route, {
       method: 'POST',
@@ -333,13 +385,18 @@ async function post(route: string, body: Fields): Promise<Fields> {
     if (!answer.ok) throw new Error(text(said['error']) || `the daemon answered ${answer.status}`);
     return said;
   } catch (error) {
-    if (stop.signal.aborted) throw new Error('the daemon did not answer within 3 s');
+    if (stop.signal.aborted) throw new Error(`the daemon did not answer within ${within_ms / 1000} s`);
     if (error instanceof TypeError) throw new Error('the daemon cannot be reached');
     throw error;
   } finally {
     clearTimeout(timer);
   }
 }
+
+export async function postLogin(name: string, password: string): Promise<void> {
+  await post('/api/login', {name, password}, 20_000);  // its hash is slow by intent, and made at low priority
+}
+export async function postLogout(): Promise<void> { await post('/api/logout', {}); }
 
 export async function postBlackout(on: boolean): Promise<void> {
   await post('/api/blackout', { on });

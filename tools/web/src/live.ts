@@ -1,7 +1,7 @@
 /** The live line to the daemon: server-sent events, watched by age. The browser's own reconnect gives up after an
  *  HTTP error and cannot see a line that is open but silent, so both are dealt with here. */
 
-import { isKnown, readStatus, type Status } from './api';
+import {fetchSession, readStatus, type Status} from './api';
 
 export interface Line {
   state: 'connecting' | 'live' | 'lost' | 'unknown'; // unknown: this browser is, to the daemon
@@ -39,8 +39,8 @@ export function follow(onStatus: (status: Status) => void, onLine: (line: Line) 
     source.addEventListener('error', () => {
       broken = true;
       // An event stream does not say why it was refused.
-      void isKnown().then((known) => {
-        unknown = !known;
+      void fetchSession().then((session) => {
+        unknown = session?.open === false;
         watch();
       });
       watch();

@@ -5,6 +5,7 @@ import { element } from './dom';
 import { follow } from './live';
 import {RoomCard} from './room/room_card';
 import { Selection } from './selection';
+import {AccessView} from './views/access';
 import { AlarmsView } from './views/alarms';
 import { ByHandView } from './views/by_hand';
 import { DevicesView, MetersView } from './views/devices';
@@ -18,6 +19,7 @@ import { TilesView } from './views/tiles';
 
 const selection = new Selection();
 const header = new HeaderView(themeButton());
+const access = new AccessView();
 const alarms = new AlarmsView();
 const question = new QuestionView();
 const tiles = new TilesView();
@@ -33,9 +35,11 @@ const main = element(
     'main',
     {},
     element('div', {class: 'column wide'}, room.root, points.root),
-    element('div', {class: 'column'}, tiles.root, fixtures.root, byHand.root, meters.root, devices.root, output.root),
+    element(
+        'div', {class: 'column'}, tiles.root, fixtures.root, byHand.root, meters.root, devices.root, access.log,
+        output.root),
 );
-document.getElementById('app')!.replaceChildren(header.root, alarms.root, question.root, main);
+document.getElementById('app')!.replaceChildren(header.root, alarms.root, access.root, question.root, main);
 
 /** The room is asked for until it is there, and again when the daemon turns out to be another or a newer one. */
 let roomOf: string | undefined;
@@ -81,6 +85,7 @@ follow(
   (line) => {
     header.showLine(line);
     alarms.showLine(line);
+    access.showLine(line);
     document.body.classList.toggle('stale', line.state !== 'live');
   },
 );

@@ -16,6 +16,7 @@
 
 #include "core/plan/plan.h"
 #include "tests/sanitized.h"
+#include "tools/luxrigd/api/accounts.h"
 #include "tools/process/meeting_place.h"
 #include "tools/process/runtime_folder.h"
 
@@ -54,6 +55,12 @@ std::string post(const std::string& route, const std::string& body, const std::s
 std::string get(const std::string& route, const std::string& host = "127.0.0.1") {
   return "GET " + route + " HTTP/1.1\r\nConnection: close\r\nAuthorization: Bearer " + g_token + "\r\nHost: " + host +
          "\r\n\r\n";
+}
+
+DaemonSpec at_port(int port) {
+  DaemonSpec where;
+  where.http_port = port;
+  return where;
 }
 
 constexpr const char* kJson = "Host: 127.0.0.1\r\nContent-Type: application/json\r\n";
@@ -122,7 +129,7 @@ class HttpApiTest : public ::testing::Test {
       return tl::unexpected(std::vector<Problem>{{"plan", 1, 2, "is not a plan", "send one"}});
     };
     api = std::make_unique<HttpApi>(std::move(handlers), "/nonexistent");
-    const auto bound = api->start(0);
+    const auto bound = api->start(at_port(0));
     ASSERT_TRUE(bound) << bound.error().detail;
     port = *bound;
     std::ifstream in(token_file(*runtime_folder(), port));
@@ -309,9 +316,9 @@ TEST_F(HttpApiTest, ThePortRequiresTheTokenButTheSocketDoesNot) {
       EXPECT_NE(ask(port, post(route, "{\"on\":true}", kJson)).find(" 401 "), std::string::npos) << route;
   }
   EXPECT_EQ(blackouts, 0);
-  EXPECT_NE(ask(port, get("/api/session")).find("{\"open\":false}"), std::string::npos);
+  EXPECT_NE(ask(port, get("/api/session")).find("\"open\":false"), std::string::npos);
   g_token = right;
-  EXPECT_NE(ask(port, get("/api/session")).find("{\"open\":true}"), std::string::npos);
+  EXPECT_NE(ask(port, get("/api/session")).find("\"open\":true"), std::string::npos);
   const auto folder = runtime_folder();
   ASSERT_TRUE(folder);
   struct stat is {};
@@ -377,9 +384,119 @@ TEST_F(HttpApiTest, SixteenMegabytesOfBracketsAreRefusedWithoutKeepingMemory) {
 
 TEST_F(HttpApiTest, SecondServerOnTheSamePortIsRefused) {
   HttpApi second({}, "/nonexistent");
-  const auto bound = second.start(port);
+  const auto bound = second.start(at_port(port));
   ASSERT_FALSE(bound);
   EXPECT_NE(bound.error().detail.find(std::to_string(port)), std::string::npos);
+}
+
+/// A daemon with accounts: anna operates, otto looks.
+class AccountsTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder = std::filesystem::path(testing::TempDir()) / "luxrig_http_accounts";
+    std::filesystem::create_directories(folder);
+    DaemonSpec where = at_port(0);
+    where.accounts_file = folder / "accounts.json";
+    Accounts accounts;
+    accounts.people = {{"anna", Role::operate, *password_hash("correct horse")},
+                       {"otto", Role::look, *password_hash("battery staple")}};
+    accounts.tokens = {{"ci", Role::look, token_hash("a token"), ""}};
+    ASSERT_TRUE(write_accounts(where.accounts_file, accounts));
+    HttpHandlers handlers;
+    handlers.status = [] { return std::string("{}"); };
+    handlers.blackout = [this](bool) -> Result<void> {
+      ++blackouts;
+      return {};
+    };
+    handlers.reload = []() -> Checked<std::string> { return std::string("reloaded"); };
+    api = std::make_unique<HttpApi>(std::move(handlers), "/nonexistent");
+    const auto bound = api->start(where);
+    ASSERT_TRUE(bound) << bound.error().detail;
+    port = *bound;
+    EXPECT_EQ(api->problem(), "");
+  }
+  void TearDown() override {
+    api.reset();
+    std::filesystem::remove_all(folder);
+  }
+  [[nodiscard]] std::string say(const std::string& method, const std::string& route, const std::string& headers,
+                                const std::string& body = "{}") const {
+    return ask(port, method + " " + route + " HTTP/1.1\r\nConnection: close\r\n" + kJson + headers +
+                         "Content-Length: " + std::to_string(body.size()) + "\r\n\r\n" + body);
+  }
+  /// The cookie of a new session, as a header.
+  [[nodiscard]] std::string logged_in(const std::string& name, const std::string& password) const {
+    const std::string answer =
+        say("POST", "/api/login", "", R"({"name":")" + name + R"(","password":")" + password + "\"}");
+    const std::size_t at = answer.find("Set-Cookie: ");
+    EXPECT_NE(at, std::string::npos) << answer;
+    if (at == std::string::npos) return "";
+    return "Cookie: " + answer.substr(at + 12, answer.find(';', at) - at - 12) + "\r\n";
+  }
+
+  std::filesystem::path folder;
+  std::unique_ptr<HttpApi> api;
+  int port = 0;
+  std::atomic<int> blackouts{0};
+};
+
+TEST_F(AccountsTest, EachRoleMayWhatItsRoutesSayAndIsToldWhyNot) {
+  const std::string anna = logged_in("anna", "correct horse"), otto = logged_in("otto", "battery staple");
+  const std::string on = "{\"on\":true}";
+  EXPECT_NE(say("GET", "/api/status", otto).find(" 200 "), std::string::npos);
+  EXPECT_NE(say("GET", "/api/status", anna).find(" 200 "), std::string::npos);
+  const std::string refused = say("POST", "/api/blackout", otto, on);
+  EXPECT_NE(refused.find(" 403 "), std::string::npos) << refused;
+  EXPECT_NE(refused.find("otto may look, and this is for those who may operate"), std::string::npos) << refused;
+  EXPECT_EQ(blackouts, 0);
+  EXPECT_NE(say("POST", "/api/blackout", anna, on).find(" 200 "), std::string::npos);
+  EXPECT_EQ(blackouts, 1);
+  EXPECT_NE(say("POST", "/api/reload", anna).find("anna may operate, and this is for those who may configure"),
+            std::string::npos);
+  const std::string script = "Authorization: Bearer a token\r\n";
+  EXPECT_NE(say("GET", "/api/status", script).find(" 200 "), std::string::npos);
+  EXPECT_NE(say("POST", "/api/blackout", script, on).find("script ci may look"), std::string::npos);
+  EXPECT_NE(say("GET", "/api/session", otto).find(R"("name":"otto","open":true,"role":"look")"), std::string::npos);
+  EXPECT_NE(say("POST", "/api/logout", otto).find("Max-Age=0"), std::string::npos);
+  EXPECT_NE(say("GET", "/api/status", otto).find("log in on its page"), std::string::npos);
+}
+
+TEST_F(AccountsTest, AStolenCookieIsWorthNothingFromAnotherOrigin) {
+  const std::string anna = logged_in("anna", "correct horse");
+  for (const char* from : {"Origin: http://evil.example\r\n", "Sec-Fetch-Site: cross-site\r\n"})
+    EXPECT_NE(say("POST", "/api/blackout", anna + from, "{\"on\":true}").find(" 403 "), std::string::npos) << from;
+  EXPECT_EQ(blackouts, 0);
+}
+
+TEST_F(AccountsTest, WrongPasswordsAreToldToWait) {
+  const std::string wrong = R"({"name":"anna","password":"wrong"})";
+  for (int i = 0; i < 5; ++i) EXPECT_NE(say("POST", "/api/login", "", wrong).find(" 401 "), std::string::npos) << i;
+  // The wait grows with each attempt, so a slow computer gets there, too.
+  std::string answer;
+  for (int i = 0; i < 20 && answer.find(" 429 ") == std::string::npos; ++i)
+    answer = say("POST", "/api/login", "", wrong);
+  EXPECT_NE(answer.find(" 429 "), std::string::npos) << answer;
+  EXPECT_NE(answer.find("Retry-After: "), std::string::npos) << answer;
+  EXPECT_NE(answer.find("too many attempts"), std::string::npos) << answer;
+  for (const char* bad :
+       {"[]", "{}", R"({"name":"anna"})", R"({"name":"a b","password":"x"})", R"({"name":1,"password":"x"})"})
+    EXPECT_NE(say("POST", "/api/login", "", bad).find(" 400 "), std::string::npos) << bad;
+}
+
+TEST_F(AccountsTest, AChangeOfTheFileIsFollowedAndADamagedOneIsNobodys) {
+  const std::string anna = logged_in("anna", "correct horse");
+  const auto code = [&] { return std::atoi(say("GET", "/api/status", anna).c_str() + 9); };
+  const auto becomes = [&](int wanted) {
+    for (int i = 0; i < 3000 && code() != wanted; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    return code() == wanted;
+  };
+  EXPECT_EQ(code(), 200);
+  ASSERT_EQ(::chmod((folder / "accounts.json").c_str(), 0644), 0);
+  EXPECT_TRUE(becomes(401));
+  EXPECT_NE(api->problem().find("chmod 600"), std::string::npos) << api->problem();
+  ASSERT_EQ(::chmod((folder / "accounts.json").c_str(), 0600), 0);
+  EXPECT_TRUE(becomes(200));
+  EXPECT_EQ(api->problem(), "");
 }
 
 }  // namespace

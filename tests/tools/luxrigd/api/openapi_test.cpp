@@ -38,9 +38,19 @@ TEST(OpenApi, EachRouteOfTheServerIsInTheFile) {
   EXPECT_EQ(ids.size(), in_file.size()) << "two operations have one name";
 }
 
-TEST(OpenApi, OnlyTheSessionAnswersAnybody) {
-  for (const ApiRoute& route : route_table())
-    EXPECT_EQ(route.role == Role::anybody, std::string(route.method) + route.path == "GET/api/session") << route.path;
+TEST(OpenApi, OnlyTheSessionAndTheLoginAnswerAnybody) {
+  for (const ApiRoute& route : route_table()) {
+    const std::string what = std::string(route.method) + route.path;
+    EXPECT_EQ(route.role == Role::anybody, what == "GET/api/session" || what == "POST/api/login") << what;
+  }
+}
+
+TEST(OpenApi, WhoMayLookChangesNothingAndBlackoutIsForWhoOperates) {
+  for (const ApiRoute& route : route_table()) {
+    const std::string what = std::string(route.method) + route.path;
+    if (route.role == Role::look) EXPECT_TRUE(std::string(route.method) == "GET" || what == "POST/api/logout") << what;
+    if (what == "POST/api/blackout") EXPECT_TRUE(route.role == Role::operate && route.urgent);
+  }
 }
 
 }  // namespace

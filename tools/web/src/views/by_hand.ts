@@ -3,6 +3,7 @@
 import { postGoal, postLevel, postRelease, type Override, type Status } from '../api';
 import { Rows, card, element, setAttribute, setText } from '../dom';
 import * as format from '../format';
+import {forRole} from '../roles';
 
 const SHOWN_MS = 10_000;
 /** As a person chooses it; [s], 0: until released. */
@@ -63,7 +64,7 @@ export class ByHandView {
     });
     this.name.addEventListener('input', () => this.showUnit());
     this.all.addEventListener('click', () => void this.send(() => postRelease(undefined)));
-    this.root = card('by-hand', 'By hand', list, this.none, form, this.all, this.answer);
+    this.root = card('by-hand', 'By hand', forRole('operate', list, this.none, form, this.all), this.answer);
   }
 
   show(status: Status): void {

@@ -4,6 +4,7 @@ import { postBlackout, type Status } from '../api';
 import { element, setAttribute, setText } from '../dom';
 import { age, phase } from '../format';
 import type { Line } from '../live';
+import {onPermission} from '../roles';
 
 const FAILURE_SHOWN_MS = 10_000;
 
@@ -23,6 +24,7 @@ export class HeaderView {
   private readonly buttonState = element('span', { class: 'blackout-state' }, 'light is on');
   private readonly failure = element('p', { class: 'blackout-failure', role: 'alert' });
   private dark = false;
+  private refused = '';  // why this person may not
   private fading: ReturnType<typeof setTimeout> | undefined;
   private asked: boolean | undefined; // sent, not yet seen in a status
 
@@ -30,6 +32,11 @@ export class HeaderView {
     this.button.append(this.buttonTitle, this.buttonState);
     this.button.addEventListener('click', () => void this.toggle());
     this.blackout = element('div', { class: 'blackout-place' }, this.button, this.failure);
+    onPermission('operate', (may, why) => {
+      this.button.disabled = !may;
+      this.refused = why;
+      this.showButton();
+    });
     this.root = element(
       'header',
       { class: 'top' },
@@ -66,8 +73,11 @@ export class HeaderView {
     this.button.classList.toggle('waiting', this.asked !== undefined);
     setText(this.buttonTitle, this.dark ? 'BLACKOUT IS ON' : 'BLACKOUT');
     setText(
-      this.buttonState,
-      this.asked !== undefined ? 'sent, waiting' : this.dark ? 'press to bring the light back' : 'all light off at once',
+        this.buttonState,
+        this.refused                 ? this.refused :
+            this.asked !== undefined ? 'sent, waiting' :
+            this.dark                ? 'press to bring the light back' :
+                                       'all light off at once',
     );
   }
 

@@ -4,6 +4,7 @@ import {postAnswer, type AnswerWhat, type Question} from '../api';
 import {element, setAttribute, setText} from '../dom';
 import * as format from '../format';
 import {readingOf} from '../reading';
+import {forRole} from '../roles';
 
 const SURE_MS = 5000;
 
@@ -54,8 +55,9 @@ export class QuestionView {
     this.lux.addEventListener('input', () => this.complain(''));
     this.card = element(
         'section', {class: 'card question', id: 'question', 'aria-labelledby': 'question-title', hidden: ''},
-        element('h2', {id: 'question-title'}, 'Luxmeter in the hand', this.step), this.place, this.lit, form,
-        this.wrong, element('div', {class: 'question-more'}, skip, other, this.end), this.known);
+        element('h2', {id: 'question-title'}, 'Luxmeter in the hand', this.step), this.place, this.lit,
+        forRole('operate', form, this.wrong, element('div', {class: 'question-more'}, skip, other, this.end)),
+        this.known);
     this.root = element('div', {class: 'question-room'}, this.said, this.card);
   }
 
