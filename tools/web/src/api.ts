@@ -135,20 +135,22 @@ export interface Room {
   picture?: string; // path on this server
 }
 
-type Fields = Record<string, unknown>;
+export type Fields = Record<string, unknown>;
 
-const fieldsOf = (value: unknown): Fields =>
-  typeof value === 'object' && value !== null && !Array.isArray(value) ? (value as Fields) : {};
-const listOf = (value: unknown): Fields[] => (Array.isArray(value) ? value.map(fieldsOf) : []);
-const text = (value: unknown): string => (typeof value === 'string' ? value : '');
-const number = (value: unknown): number | undefined =>
-  typeof value === 'number' && Number.isFinite(value) ? value : undefined;
+export const fieldsOf = (value: unknown): Fields =>
+    typeof value === 'object' && value !== null && !Array.isArray(value) ? (value as Fields) : {};
+export const listOf = (value: unknown): Fields[] => (Array.isArray(value) ? value.map(fieldsOf) : []);
+export const text = (value: unknown): string => (typeof value === 'string' ? value : '');
+export const number = (value: unknown): number|undefined =>
+    typeof value === 'number' && Number.isFinite(value) ? value : undefined;
 
 function vector(value: unknown): Vec3 | undefined {
   if (!Array.isArray(value) || value.length !== 3) return undefined;
   const [x, y, z] = value.map(number);
   return x === undefined || y === undefined || z === undefined ? undefined : [x, y, z];
 }
+
+export const isVec3 = (value: unknown): value is Vec3 => vector(value) !== undefined;
 
 /** Copies the named numbers that are there; an absent one stays absent. */
 function numbers<K extends string>(from: Fields, ...keys: K[]): Partial<Record<K, number>> {
@@ -319,9 +321,9 @@ export async function isKnown(): Promise<boolean> {
 }
 
 /** Resolves with the daemon's answer once it has acknowledged; rejects with a sentence for a person. */
-async function post(route: string, body: Fields): Promise<Fields> {
+export async function post(route: string, body: Fields, within_s = 3): Promise<Fields> {
   const stop = new AbortController();
-  const timer = setTimeout(() => stop.abort(), 3000);
+  const timer = setTimeout(() => stop.abort(), 1000 * within_s);
   try {
     const answer = await fetch(route, {
       method: 'POST',
@@ -333,7 +335,7 @@ async function post(route: string, body: Fields): Promise<Fields> {
     if (!answer.ok) throw new Error(text(said['error']) || `the daemon answered ${answer.status}`);
     return said;
   } catch (error) {
-    if (stop.signal.aborted) throw new Error('the daemon did not answer within 3 s');
+    if (stop.signal.aborted) throw new Error(`the daemon did not answer within ${within_s} s`);
     if (error instanceof TypeError) throw new Error('the daemon cannot be reached');
     throw error;
   } finally {
