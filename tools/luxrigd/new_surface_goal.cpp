@@ -64,7 +64,7 @@ std::filesystem::path new_strokes_file(const std::filesystem::path& folder, cons
   }
 }
 
-std::string text_of(const std::vector<Problem>& problems) {
+std::string unreadable_with(const std::vector<Problem>& problems) {
   return fmt::format("the rig could not be read with it: {}", problems.front().text());
 }
 
@@ -79,7 +79,7 @@ Result<void> save_if_readable(const std::filesystem::path& rig_file, const Surfa
   if (rig) return {};
   for (const Before* before : {&strokes_before, &points_before})
     if (auto back = before->put_back(); !back) return back;
-  return refusal(text_of(rig.error()));
+  return refusal(unreadable_with(rig.error()));
 }
 
 Result<SurfaceGoalSpec> add_surface_goal(const std::filesystem::path& rig_file, const std::string& name,
@@ -106,7 +106,7 @@ Result<SurfaceGoalSpec> add_surface_goal(const std::filesystem::path& rig_file, 
   const auto rig = parse_rig(more, rig_file, folder);
   if (!rig) {
     take_back();
-    return refusal(text_of(rig.error()));
+    return refusal(unreadable_with(rig.error()));
   }
   if (auto written = write_file(rig_file, more); !written) {
     // After a fault while it was synced, it may be there.

@@ -54,7 +54,7 @@ constexpr std::size_t kMaxStrokes = 10000;
 /// Patches that new brushes may meet, over all pieces of their paths: some seconds.
 constexpr double kMaxPatchVisits = 1e8;
 
-tl::unexpected<PaintingRefusal> refused(Why why, std::string text) {
+tl::unexpected<PaintingRefusal> refused_since(Why why, std::string text) {
   return tl::unexpected(PaintingRefusal{why, std::move(text), {}});
 }
 
@@ -125,8 +125,8 @@ PaintedGoals::Goal* PaintedGoals::find(const std::string& name) {
 tl::unexpected<PaintingRefusal> PaintedGoals::unknown(const std::string& name) const {
   std::vector<std::string_view> names;
   for (const auto& goal : goals_) names.push_back(goal->spec.name);
-  return refused(Why::unknown, fmt::format("the rig has no surface goal {}: {}", in_quotes(name),
-                                           mend_for_unknown(name, names, "add one: POST /api/surface-goals")));
+  return refused_since(Why::unknown, fmt::format("the rig has no surface goal {}: {}", in_quotes(name),
+                                                 mend_for_unknown(name, names, "add one: POST /api/surface-goals")));
 }
 
 void PaintedGoals::refresh() {
@@ -210,13 +210,13 @@ Painted<PaintingDocument> PaintedGoals::document(const std::string& name) {
   refresh();
   const Goal* goal = find(name);
   if (!goal) return unknown(name);
-  if (!goal->trouble.empty()) return refused(Why::conflict, goal->trouble);
+  if (!goal->trouble.empty()) return refused_since(Why::conflict, goal->trouble);
   return goal->document;
 }
 
 Painted<void> PaintedGoals::need_painting(Goal& goal) {
-  if (!goal.trouble.empty()) return refused(Why::conflict, goal.trouble);
-  if (!goal.unpaintable.empty()) return refused(Why::conflict, goal.unpaintable);
+  if (!goal.trouble.empty()) return refused_since(Why::conflict, goal.trouble);
+  if (!goal.unpaintable.empty()) return refused_since(Why::conflict, goal.unpaintable);
   if (goal.painted) return {};
   if (std::find(wanted_.begin(), wanted_.end(), goal.spec.name) == wanted_.end()) wanted_.push_back(goal.spec.name);
   if (!making_) {
@@ -228,7 +228,7 @@ Painted<void> PaintedGoals::need_painting(Goal& goal) {
     });
   }
   wake_.notify_all();
-  return refused(Why::not_yet, "the surfaces are being cut into patches: ask again in a second");
+  return refused_since(Why::not_yet, "the surfaces are being cut into patches: ask again in a second");
 }
 
 void PaintedGoals::make_all(const std::stop_token& stop) {
@@ -286,7 +286,7 @@ Painted<PaintingChange> PaintedGoals::put(const std::string& name, const std::ve
   if (auto why = why_not(strokes, common_start(goal->document.strokes, strokes), goal->spec, *painted.surface,
                          *goal->surfaces->session->rays);
       !why.empty())
-    return refused(Why::invalid, std::move(why));
+    return refused_since(Why::invalid, std::move(why));
   change.patches = set_strokes(*goal, strokes);
   for (const std::uint32_t patch : change.patches) change.lux.push_back(painted.painting->lux()[patch]);
   change.version = goal->document.version;
@@ -328,18 +328,18 @@ Painted<std::size_t> PaintedGoals::save(const std::vector<std::string>& names) {
 
 Painted<void> PaintedGoals::save(Goal& goal) {
   const auto in_file = strokes_of(goal.spec);
-  if (!in_file) return refused(Why::conflict, in_file.error().front().text());
+  if (!in_file) return refused_since(Why::conflict, in_file.error().front().text());
   if (auto version = version_of_strokes(painting_to_json(*in_file)); version != goal.on_disk) {
     goal.on_disk = std::move(version);
-    return refused(Why::conflict,
-                   fmt::format("another program has changed {} since it was read: save again to write over it",
-                               goal.spec.strokes_file.string()));
+    return refused_since(Why::conflict,
+                         fmt::format("another program has changed {} since it was read: save again to write over it",
+                                     goal.spec.strokes_file.string()));
   }
   const std::string strokes = painting_to_json(goal.document.strokes);
   if (const auto saved =
           save_if_readable(surfaces_->session->rig.file, goal.spec, strokes, points_of(goal.spec, *goal.painted));
       !saved)
-    return refused(saved.error().cause == Cause::invalid ? Why::conflict : Why::disk, saved.error().detail);
+    return refused_since(saved.error().cause == Cause::invalid ? Why::conflict : Why::disk, saved.error().detail);
   goal.on_disk = goal.document.version;
   goal.document.saved = true;
   goal.read_at = written_at(goal.spec.strokes_file);
@@ -349,10 +349,12 @@ Painted<void> PaintedGoals::save(Goal& goal) {
 Painted<void> PaintedGoals::add(const std::string& name, const std::optional<double>& max_lx) {
   const std::lock_guard lock(mutex_);
   refresh();
-  if (!surfaces_) return refused(Why::not_yet, "the rig is not read yet: ask again in a second");
-  if (find(name)) return refused(Why::conflict, fmt::format("there is a surface goal {} already", in_quotes(name)));
+  if (!surfaces_) return refused_since(Why::not_yet, "the rig is not read yet: ask again in a second");
+  if (find(name))
+    return refused_since(Why::conflict, fmt::format("there is a surface goal {} already", in_quotes(name)));
   auto added = add_surface_goal(surfaces_->session->rig.file, name, max_lx);
-  if (!added) return refused(added.error().cause == Cause::invalid ? Why::conflict : Why::disk, added.error().detail);
+  if (!added)
+    return refused_since(added.error().cause == Cause::invalid ? Why::conflict : Why::disk, added.error().detail);
   auto goal = std::make_unique<Goal>();
   goal->spec = std::move(*added);
   goal->in_force = false;

@@ -7,6 +7,7 @@
 #include "core/text/plain_text.h"
 #include "tools/http/json_body.h"
 #include "tools/http/percent.h"
+#include "tools/luxrigd/api/command_limits.h"
 #include "tools/luxrigd/api/command_routes.h"
 #include "tools/luxrigd/painted_goals.h"
 
@@ -15,13 +16,12 @@ namespace {
 
 constexpr std::size_t kToldProblems = 5;
 constexpr std::size_t kMaxPatchBytes = 64u << 20;
-constexpr double kFarthest_m = 1e5;  // as the schema of places says
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 std::string quoted_version(const std::string& version) { return "\"" + version + "\""; }
 
-HttpResponse painting_answer(const Json& json, int status = 200) {
+HttpResponse uncached_json(const OrderedJson& json, int status = 200) {
   return {status,
           "application/json",
           json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace),
@@ -29,18 +29,18 @@ HttpResponse painting_answer(const Json& json, int status = 200) {
 }
 
 /// The document has its strokes' text as the file has it.
-Json json_of(const std::string& name, const PaintingDocument& document) {
-  Json out = {{"name", name}, {"version", document.version}, {"saved", document.saved}};
-  out.update(Json::parse(painting_to_json(document.strokes)));
+OrderedJson json_of(const std::string& name, const PaintingDocument& document) {
+  OrderedJson out = {{"name", name}, {"version", document.version}, {"saved", document.saved}};
+  out.update(OrderedJson::parse(painting_to_json(document.strokes)));
   return out;
 }
 
 HttpResponse refusal_answer(const PaintingRefusal& refusal, const std::string& name = {}) {
   using Why = PaintingRefusal::Why;
   if (refusal.why == Why::stale && refusal.present) {
-    Json out = json_of(name, *refusal.present);
+    OrderedJson out = json_of(name, *refusal.present);
     out["error"] = refusal.text;
-    HttpResponse stale = painting_answer(out, 412);
+    HttpResponse stale = uncached_json(out, 412);
     stale.headers.emplace_back("ETag", quoted_version(refusal.present->version));
     return stale;
   }
@@ -63,17 +63,17 @@ std::optional<std::string> version_in(const HttpRequest& request) {
 namespace answer_to {
 
 HttpResponse surface_goals(Handlers handlers, Request) {
-  Json all = Json::array();
-  if (!handlers.painting) return painting_answer(all);
+  OrderedJson all = OrderedJson::array();
+  if (!handlers.painting) return uncached_json(all);
   for (const PaintedGoals::Listed& one : handlers.painting->all()) {
-    Json goal = {
+    OrderedJson goal = {
         {"name", one.goal.name},       {"version", one.painting.version}, {"strokes", one.painting.strokes.size()},
         {"saved", one.painting.saved}, {"in_force", one.in_force},        {"patch_m", one.goal.patch_m}};
     if (one.goal.max_lx) goal["max_lux"] = *one.goal.max_lx;
     if (!one.trouble.empty()) goal["trouble"] = one.trouble;
     all.push_back(std::move(goal));
   }
-  return painting_answer(all);
+  return uncached_json(all);
 }
 
 HttpResponse add_surface_goal(Handlers handlers, Request request) {
@@ -88,7 +88,7 @@ HttpResponse add_surface_goal(Handlers handlers, Request request) {
   if (!handlers.painting) return http_refusal(409, "this daemon has no rig to paint");
   const auto max_lx = has_limit ? std::optional(body["max_lux"].get<double>()) : std::nullopt;
   if (const auto added = handlers.painting->add(name, max_lx); !added) return refusal_answer(added.error());
-  return painting_answer({{"added", true}});
+  return uncached_json({{"added", true}});
 }
 
 HttpResponse surface_goal(Handlers handlers, Request request) {
@@ -96,7 +96,7 @@ HttpResponse surface_goal(Handlers handlers, Request request) {
   if (!name || !handlers.painting) return no_such_goal();
   const auto document = handlers.painting->document(*name);
   if (!document) return refusal_answer(document.error());
-  HttpResponse response = painting_answer(json_of(*name, *document));
+  HttpResponse response = uncached_json(json_of(*name, *document));
   response.headers.emplace_back("ETag", quoted_version(document->version));
   return response;
 }
@@ -118,10 +118,12 @@ HttpResponse put_surface_goal(Handlers handlers, Request request) {
   if (!name || !handlers.painting) return no_such_goal();
   const auto change = handlers.painting->put(*name, *strokes, version_in(request));
   if (!change) return refusal_answer(change.error(), *name);
-  Json out = {
-      {"version", change->version}, {"strokes", change->strokes}, {"patches", change->patches}, {"lux", Json::array()}};
-  for (const float lux : change->lux) out["lux"].push_back(std::isnan(lux) ? Json() : Json(lux));
-  HttpResponse response = painting_answer(out);
+  OrderedJson out = {{"version", change->version},
+                     {"strokes", change->strokes},
+                     {"patches", change->patches},
+                     {"lux", OrderedJson::array()}};
+  for (const float lux : change->lux) out["lux"].push_back(std::isnan(lux) ? OrderedJson() : OrderedJson(lux));
+  HttpResponse response = uncached_json(out);
   response.headers.emplace_back("ETag", quoted_version(change->version));
   return response;
 }
@@ -151,7 +153,7 @@ HttpResponse save_painting(Handlers handlers, Request request) {
   if (!saved) return refusal_answer(saved.error());
   const char* what = *saved == 0 ? "nothing has changed since it was saved"
                                  : "strokes and points are beside the rig file: luxrig reload puts them in force";
-  return painting_answer({{"saved", true}, {"text", what}});
+  return uncached_json({{"saved", true}, {"text", what}});
 }
 
 }  // namespace answer_to

@@ -21,7 +21,7 @@ Schema for_s() { return up_to(kLongestByHand_s, "held for so long; absent: until
 Schema fade_s() { return between(kShortestFade_s, kLongestFade_s, "how long it takes to get there"); }
 Schema place(const char* what) {
   Schema out = vector(what);
-  out["items"] = between(-1e5, 1e5);
+  out["items"] = between(-kFarthest_m, kFarthest_m);
   return out;
 }
 Schema short_text(int longest) { return {{"type", "string"}, {"minLength", 1}, {"maxLength", longest}}; }
@@ -71,7 +71,7 @@ Schema surface_place() {
   return request(
       {{"position", place("m, world, on the surface")}, {"normal", place("of length 1, to the side that is meant")}});
 }
-Schema stroke_of(const char* kind, const std::vector<Key>& keys) {
+Schema stroke_body(const char* kind, const std::vector<Key>& keys) {
   Schema path = list(surface_place(), 1);
   if (std::string(kind) != name_of(StrokeKind::brush)) path["maxItems"] = 1;
   return request(both({{"kind", one_of_texts({kind})}, {"path", path}}, keys));
@@ -79,11 +79,11 @@ Schema stroke_of(const char* kind, const std::vector<Key>& keys) {
 Schema lux_of_stroke() { return between(0, kMaxStroke_lx); }
 Schema painting_body() {
   const Schema stroke =
-      any_of({stroke_of(name_of(StrokeKind::brush),
-                        {{"lux", lux_of_stroke()}, {"radius_m", at_least(0)}, {"falloff", between(0, 1)}}),
-              stroke_of(name_of(StrokeKind::bucket), {{"lux", lux_of_stroke()}}),
-              stroke_of(name_of(StrokeKind::selective), {{"lux", lux_of_stroke()}}),
-              stroke_of(name_of(StrokeKind::eraser), {})});
+      any_of({stroke_body(name_of(StrokeKind::brush),
+                          {{"lux", lux_of_stroke()}, {"radius_m", at_least(0)}, {"falloff", between(0, 1)}}),
+              stroke_body(name_of(StrokeKind::bucket), {{"lux", lux_of_stroke()}}),
+              stroke_body(name_of(StrokeKind::selective), {{"lux", lux_of_stroke()}}),
+              stroke_body(name_of(StrokeKind::eraser), {})});
   return request({{"luxrig_painting", Schema{{"const", 1}}}, {"strokes", list(stroke)}});
 }
 Schema painting_answer() {

@@ -11,7 +11,7 @@ namespace {
 
 using nlohmann::json;
 
-std::string header(const HttpResponse& response, const std::string& name) {
+std::string header_of(const HttpResponse& response, const std::string& name) {
   for (const auto& [key, value] : response.headers)
     if (key == name) return value;
   return "";
@@ -45,7 +45,7 @@ TEST_F(PaintingRoutesTest, AStrokeIsPutAndReadBack) {
   EXPECT_EQ(all[0]["strokes"], 0);
   EXPECT_EQ(ask("PUT", "/api/surface-goals/floor", painting_to_json({})).status, 503);
   const std::string bare = testing::PaintedRoomTest::patches_of(*handlers_.painting);
-  const std::string first = header(ask("GET", "/api/surface-goals/floor"), "ETag");
+  const std::string first = header_of(ask("GET", "/api/surface-goals/floor"), "ETag");
   const HttpResponse done = put({bucket(120)}, first);
   ASSERT_EQ(done.status, 200) << done.body;
   const json change = json::parse(done.body);
@@ -53,17 +53,17 @@ TEST_F(PaintingRoutesTest, AStrokeIsPutAndReadBack) {
   ASSERT_GT(change["patches"].size(), 20u);
   EXPECT_EQ(change["lux"][0], 120);
   const HttpResponse now = ask("GET", "/api/surface-goals/floor");
-  EXPECT_EQ(header(now, "ETag"), header(done, "ETag"));
+  EXPECT_EQ(header_of(now, "ETag"), header_of(done, "ETag"));
   EXPECT_EQ(json::parse(now.body)["strokes"], json::parse(painting_to_json(std::vector{bucket(120)}))["strokes"]);
 
   const HttpResponse stale = put({}, first);
   EXPECT_EQ(stale.status, 412);
   EXPECT_EQ(json::parse(stale.body)["strokes"].size(), 1u);
-  EXPECT_EQ(header(stale, "ETag"), header(done, "ETag"));
+  EXPECT_EQ(header_of(stale, "ETag"), header_of(done, "ETag"));
   for (const char* none : {"W/\"x\"", "x", "\"", ""}) EXPECT_EQ(put({}, none).status, 412) << none;
   EXPECT_EQ(put({}, "*").status, 200);
 
-  EXPECT_EQ(put({bucket(50)}, header(ask("GET", "/api/surface-goals/floor"), "ETag")).status, 200);
+  EXPECT_EQ(put({bucket(50)}, header_of(ask("GET", "/api/surface-goals/floor"), "ETag")).status, 200);
   EXPECT_EQ(ask("POST", "/api/save-painting", "{}").status, 200);
   EXPECT_EQ(testing::text_of(file("floor.json")), painting_to_json(std::vector{bucket(50)}));
 }
@@ -81,7 +81,7 @@ TEST_F(PaintingRoutesTest, PatchesHaveTheirPlacesAndLux) {
   std::memcpy(origin_m, bytes.data() + 16, 24);
   EXPECT_EQ(bytes.substr(0, 4), "LXP1");
   EXPECT_EQ(cell_m, 0.2);
-  EXPECT_EQ("\"" + bytes.substr(40, 16) + "\"", header(ask("GET", "/api/surface-goals/floor"), "ETag"));
+  EXPECT_EQ("\"" + bytes.substr(40, 16) + "\"", header_of(ask("GET", "/api/surface-goals/floor"), "ETag"));
   ASSERT_EQ(bytes.size(), 64 + 20 * std::size_t{count});
   std::size_t painted = 0;
   for (std::uint32_t p = 0; p < count; ++p) {
@@ -95,7 +95,7 @@ TEST_F(PaintingRoutesTest, PatchesHaveTheirPlacesAndLux) {
     EXPECT_EQ(bytes[64 + 16 * std::size_t{p} + 14], 127) << "up";
   }
   EXPECT_GT(painted, 20u);
-  EXPECT_EQ(ask("GET", "/api/surface-patches/floor", "", {{"if-none-match", header(answer, "ETag")}}).status, 304);
+  EXPECT_EQ(ask("GET", "/api/surface-patches/floor", "", {{"if-none-match", header_of(answer, "ETag")}}).status, 304);
 }
 
 TEST_F(PaintingRoutesTest, HostileRequestsAreRefusedWithAReason) {
