@@ -143,7 +143,9 @@ TEST(PaintingRoutes, BodiesAreBoundedAndANewGoalIsForThoseWhoConfigure) {
       EXPECT_EQ(route.max_body_bytes, kMaxPaintingBytes);  // far below 10⁶ places
       EXPECT_EQ(route.role, Role::operate);
     }
-    if (method == "POST" && path == "/api/surface-goals") EXPECT_EQ(route.role, Role::configure);
+    if (method == "POST" && path == "/api/surface-goals") {
+      EXPECT_EQ(route.role, Role::configure);
+    }
   }
 }
 
