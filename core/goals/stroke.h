@@ -32,6 +32,7 @@ struct Stroke {
   /// Share of the radius, 0…1, over which the stroke fades into what is painted below it. Where nothing is, it has its
   /// own lux up to the edge: there is nothing to fade into, and 0 lx would be a wish for darkness.
   double falloff = 0;
+  bool operator==(const Stroke&) const = default;
 };
 
 }  // namespace luxrig

@@ -29,6 +29,7 @@ struct SurfacePatch {
 struct SurfacePlace {
   Vec3 position_world_m = Vec3::Zero();
   Vec3 normal_world = Vec3::UnitZ();  ///< unit
+  bool operator==(const SurfacePlace&) const = default;
 };
 
 /// Patches side by side that belong together.

@@ -338,15 +338,20 @@ PointsTable load_points_csv(const std::filesystem::path& path, std::size_t most)
 std::string painted_version(const SurfaceGoalSpec& goal) {
   std::string why;
   const auto strokes = text_of(goal.strokes_file, why);
-  if (!strokes) return "";
+  return strokes ? painted_version(goal, *strokes) : "";
+}
+
+std::string painted_version(const SurfaceGoalSpec& goal, std::string_view strokes) {
   Fingerprint fingerprint;
-  fingerprint.add(*strokes);
+  fingerprint.add(strokes);
   fingerprint.add(goal.name);
   fingerprint.add(goal.max_lx);
   for (const double value : {goal.weight, goal.patch_m, goal.min_spacing_m, goal.max_spacing_m}) fingerprint.add(value);
   if (goal.goal_tolerance) fingerprint.add(*goal.goal_tolerance);
   return fmt::format("{:016x}", fingerprint.value());
 }
+
+std::filesystem::path next_points_file(const SurfaceGoalSpec& goal) { return goal.points_file().string() + ".next"; }
 
 std::string points_csv(std::span<const Point> points, const std::string& made_for) {
   std::string csv =

@@ -41,6 +41,11 @@ struct PointsTable {
 /// Says what the points of a surface goal follow from: its strokes, limit, weight, tolerance and spacing. Empty if its
 /// strokes cannot be read.
 [[nodiscard]] std::string painted_version(const SurfaceGoalSpec& goal);
+/// The same for strokes that are not in its file yet.
+[[nodiscard]] std::string painted_version(const SurfaceGoalSpec& goal, std::string_view strokes);
+/// Points are here before their strokes are in the file, and move to points_file() after. So a program that is killed in
+/// between leaves a rig that can be read.
+[[nodiscard]] std::filesystem::path next_points_file(const SurfaceGoalSpec& goal);
 /// A file with these points for load_points_csv().
 [[nodiscard]] std::string points_csv(std::span<const Point> points, const std::string& made_for);
 

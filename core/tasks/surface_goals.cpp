@@ -109,7 +109,10 @@ std::vector<Point> points_of(const SurfaceGoalSpec& goal, const SurfacePainter::
     point.position_world_m = found.place.position_world_m;
     point.normal_world = found.place.normal_world;
     // As for points, a wish for 0 lx is no goal: max_lx keeps a place dark.
-    if (found.goal_lx > 0) point.goal_lx = found.goal_lx;
+    if (found.goal_lx > 0) {
+      point.goal_lx = found.goal_lx;
+      point.goal_rgb = goal.goal_rgb;
+    }
     point.weight = found.weight;
     point.max_lx = found.max_lx;
     point.goal_tolerance = goal.goal_tolerance;

@@ -50,8 +50,9 @@ cpSync(source('tests/rigs/room'), rig, { recursive: true });
 const text = readFileSync(path.join(rig, 'rig.toml'), 'utf8');
 const rests = text.replace(/^(pan_range_deg = .*)$/m, '$1\npark_pan_deg = 0\npark_tilt_deg = 0');
 assert.notEqual(rests, text);
-writeFileSync(path.join(rig, 'rig.toml'), rests.replace('[daemon]', '[daemon]\naccounts = "accounts.json"'));
+writeFileSync(path.join(rig, 'rig.toml'), `${rests.replace('[daemon]', '[daemon]\naccounts = "accounts.json"')}\n[[surface_goal]]\nname = "floor"\nstrokes = "floor.json"\n`);
 execFileSync(luxrig, ['accounts', rig, 'add', 'a-1', '--role', 'look'], { input: 'correct horse\n' });
+execFileSync(luxrig, ['paint', rig]);
 const plan = path.join(folder, 'plan.json');
 execFileSync(luxrig, ['solve', rig, '-o', plan, '--max-error', '0.05']);
 const daemon = spawn(luxrig, ['run', rig, '--sim', '--port', '0', '--max-error', '0.05'], { env: { ...process.env, XDG_RUNTIME_DIR: folder } });
@@ -100,11 +101,11 @@ try {
   const [fixtures, points, meters] = [named(first.fixtures), named(first.points), named(first.luxmeters)];
   const values = new Values(file,
     { fixture: fixtures, fixtures: [...fixtures, '*', `${fixtures[0].slice(0, 2)}*`], points: [...points, '*'],
-      anything: [...fixtures, ...points, '*'], devices: [...fixtures, ...meters] },
+      anything: [...fixtures, ...points, '*'], devices: [...fixtures, ...meters], 'surface goal': ['floor'] },
     { Plan: [JSON.parse(readFileSync(plan, 'utf8'))] });
 
   const seen = new Map(); // "POST /api/level 200" -> how often
-  const known = {}; // values of parameters, from the last answer
+  const known = { name: 'floor' }; // values of parameters, from the last answer
   let reloads = 0;
   const one = async ({ operation, sent, parameters, misdeed }) => {
     let { method } = operation;
@@ -123,7 +124,7 @@ try {
       case 'other host': headers.Host = 'rig.example'; break;
       case 'other origin': headers.Origin = `http://127.0.0.1:${port + 1}`; break;
       case 'other site': headers['Sec-Fetch-Site'] = 'cross-site'; break;
-      case 'other method': method = 'put'; break;
+      case 'other method': method = 'patch'; break;
       case 'other path': route = `/api/none${route.slice(4)}`; break;
       case 'other type':
         if (!body) body = '{}'; // a body of no bytes has no type
@@ -143,6 +144,8 @@ try {
 
     // A computer that stands still for a second is told of with 500, as it should be; nothing else is.
     if (answer.code === 500) assert.match(answer.body, /has not taken it yet|the control loop did not answer/, told);
+    // Two large bodies at once are taken, and more are asked to try again before their length is looked at.
+    if (misdeed === 'too long' && answer.code === 503) owed = 503;
     if (owed !== undefined) assert.equal(answer.code, owed, told);
     // A path that does not exist is in no file; its refusal looks like all others.
     let place = ['paths', operation.path, operation.method, 'responses', String(answer.code)];
@@ -160,6 +163,7 @@ try {
       place.push('content', answer.type, 'schema');
     }
     if (answer.etag) known['If-None-Match'] = answer.etag;
+    if (answer.etag && operation.path === '/api/surface-goals/{name}') known['If-Match'] = answer.etag;
     if (answer.type === json) {
       const validate = schemaAt(...place);
       assert.ok(validate(JSON.parse(answer.body)), `the file does not name this body: ${told}\n${JSON.stringify(validate.errors)}`);
@@ -179,6 +183,8 @@ try {
   // The test would say nothing if all were refused. So each operation is done first, with each key that it takes, and
   // refused once.
   const question = { id: 'a-1', text: 'hold it here', position: [1, 2, 0.8], normal: [0, 0, 1], step: 1, steps: 2, readings: 0, for_s: 600 };
+  const onFloor = (x, y) => ({ position: [x, y, 0], normal: [0, 0, 1] });
+  await eventually('the surfaces are cut into patches', async () => (await ask(port, { path: '/api/surface-patches/floor', headers: access })).code === 200, 60000);
   const good = {
     'POST /api/blackout': [{ on: true }, { on: false }],
     'POST /api/identify': [{ fixture: fixtures[0], seconds: 0.1 }, { fixture: fixtures[0] }],
@@ -193,6 +199,11 @@ try {
     'POST /api/answer': [{ id: 'a-1', what: 'reading', lux: 182.5 }],
     'POST /api/jobs': [{ kind: 'solve' }],
     'POST /api/login': [{ name: 'a-1', password: 'correct horse' }],
+    'POST /api/surface-goals': [{ name: 'wall', max_lux: 200 }],
+    'PUT /api/surface-goals/{name}': [{ luxrig_painting: 1, strokes: [
+      { kind: 'brush', lux: 300, radius_m: 0.3, falloff: 0.5, path: [onFloor(1, 1), onFloor(1.2, 1)] },
+      { kind: 'bucket', lux: 120, path: [onFloor(1, 1)] }, { kind: 'selective', lux: 50, path: [onFloor(1, 1)] }, { kind: 'eraser', path: [onFloor(1, 1)] }] }],
+    'POST /api/save-painting': [{ goals: ['floor'] }, {}],
   };
   for (const { operation, schema } of operations) {
     const what = `${operation.method.toUpperCase()} ${operation.path}`;

@@ -13,7 +13,7 @@ const web = new URL('../../tools/web/', import.meta.url);
 const { build } = createRequire(new URL('package.json', web))('esbuild');
 const { outputFiles } = await build({
   stdin: {
-    contents: ['colour_scales', 'layers', 'glb', 'made_room', 'surfaces', 'labels', 'points_3d'].map((name) => `export * from './src/room/${name}';`).join('\n')
+    contents: ['colour_scales', 'layers', 'glb', 'made_room', 'surfaces', 'labels', 'points_3d', 'paint_document', 'patches'].map((name) => `export * from './src/room/${name}';`).join('\n')
       + "export { Ray, Vector3 } from 'three';",
     resolveDir: fileURLToPath(web), loader: 'ts',
   },
@@ -210,4 +210,64 @@ test('the nearest other point is found', () => {
   const places = Array.from({ length: 200 }, () => ({ x: 4 * next(), y: 4 * next(), z: next() }));
   const brute = places.map((p, i) => Math.min(0.7, ...places.filter((_, j) => j !== i).map((q) => Math.hypot(p.x - q.x, p.y - q.y, p.z - q.z))));
   room.nearest(places).forEach((far, i) => assert.ok(Math.abs(far - brute[i]) < 1e-12));
+});
+
+test('a list of strokes is undone, done again, and brought to what the daemon has', () => {
+  const pen = { lux: 300, radius_m: 0.4, falloff: 0 };
+  const place = (x) => ({ position: [x, 0, 0], normal: [0, 0, 1] });
+  const document = new room.PaintDocument();
+  document.add(room.strokeOf('bucket', pen, place(1)));
+  document.add(room.strokeOf('brush', pen, place(2)));
+  document.extend(place(3));
+  const kinds = () => document.strokes.map((one) => `${one.kind}${one.path.length}`).join();
+  assert.equal(kinds(), 'bucket1,brush2');
+  document.undo();
+  assert.equal(kinds(), 'bucket1');
+  document.extend(place(4)); // a bucket has one place
+  assert.equal(kinds(), 'bucket1');
+  document.redo();
+  assert.equal(kinds(), 'bucket1,brush2');
+  // Somebody else took the brush away and put an eraser there: ours can be put on top of it.
+  const theirs = [document.strokes[0], room.strokeOf('eraser', pen, place(1))];
+  assert.deepEqual(theirs[1], { kind: 'eraser', path: [place(1)] });
+  document.replace(theirs);
+  assert.equal(kinds(), 'bucket1,eraser1');
+  document.replace(theirs); // as it is told twice
+  document.redo();
+  assert.equal(kinds(), 'bucket1,eraser1,brush2');
+  document.undo();
+  document.add(room.strokeOf('selective', pen, place(5)));
+  assert.ok(!document.canRedo);
+  const before = document.revision;
+  document.redo();
+  assert.equal(document.revision, before);
+  assert.ok(room.isApart([0, 0, 0], [0.2, 0, 0], 0.4) && !room.isApart([0, 0, 0], [0.05, 0, 0], 0.4));
+  assert.equal(room.otherRadius(0.4, true), 0.5);
+  assert.equal(room.otherRadius(0.05, false), 0.05);
+});
+
+test('patches are read as they are sent, changed, and looked up by their side', () => {
+  const bytes = Buffer.alloc(64 + 20 * 2);
+  bytes.write('LXP1', 0);
+  bytes.writeUInt32LE(2, 4);
+  bytes.writeDoubleLE(0.25, 8);
+  bytes.writeDoubleLE(100, 16);
+  bytes.write('0123456789abcdef', 40);
+  for (const [p, side] of [[0, 127], [1, -127]]) {
+    bytes.writeFloatLE(1.5, 64 + 16 * p);
+    bytes.writeInt8(side, 64 + 16 * p + 14);
+    bytes.writeUInt8(64, 64 + 16 * p + 15);
+    bytes.writeFloatLE(p ? NaN : 120, 64 + 32 + 4 * p);
+  }
+  const patches = room.readPatches(bytesOf(bytes));
+  assert.equal(patches.version, '0123456789abcdef');
+  assert.deepEqual(patches.origin, [100, 0, 0]);
+  assert.deepEqual([patches.place(1), patches.normal(1), patches.edge_m(0)], [[1.5, 0, 0], [0, 0, -1], 0.125]);
+  assert.deepEqual(room.paintedPatches(patches), [0]);
+  assert.equal(room.luxAt(patches, [101.5, 0.1, 0], [0, 0, 1]), 120);
+  assert.equal(room.luxAt(patches, [101.5, 0.1, 0], [0, 0, -1]), undefined, 'the other side is not painted');
+  assert.equal(room.luxAt(patches, [103, 0, 0], [0, 0, 1]), undefined);
+  room.takeChange(patches, { patches: [1, 7, -1, 0.5], lux: [80, 1, 1, 1] });
+  assert.equal(room.luxAt(patches, [101.5, 0, 0], [0, 0, -1]), 80);
+  for (const cut of [0, 10, 63, 64 + 20]) assert.throws(() => room.readPatches(bytesOf(bytes).slice(0, cut)), /cannot be read/);
 });

@@ -10,6 +10,8 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "tools/http/percent.h"
+
 namespace luxrig {
 namespace {
 
@@ -62,27 +64,6 @@ bool is_loopback_address(const std::string& address) {
   return address == "::1" || (address.rfind("127.", 0) == 0 && address_in(address) == address);
 }
 
-int hex_digit(char c) {
-  if (c >= '0' && c <= '9') return c - '0';
-  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
-  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
-  return -1;
-}
-
-std::optional<std::string> decoded(std::string_view text) {
-  std::string out;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    if (text[i] != '%') {
-      out += text[i] == '+' ? ' ' : text[i];
-      continue;
-    }
-    if (i + 2 >= text.size() || hex_digit(text[i + 1]) < 0 || hex_digit(text[i + 2]) < 0) return std::nullopt;
-    out += static_cast<char>(hex_digit(text[i + 1]) * 16 + hex_digit(text[i + 2]));
-    i += 2;
-  }
-  return out;
-}
-
 std::string content_type_of(const std::filesystem::path& file) {
   constexpr std::pair<std::string_view, const char*> kTypes[] = {{".html", "text/html; charset=utf-8"},
                                                                  {".js", "text/javascript"},
@@ -113,7 +94,7 @@ std::optional<std::string> HttpRequest::parameter(std::string_view name) const {
     rest.remove_prefix(std::min(rest.size(), pair.size() + 1));
     const std::size_t equals = pair.find('=');
     if (pair.substr(0, equals) != name) continue;
-    return decoded(equals == std::string_view::npos ? std::string_view() : pair.substr(equals + 1));
+    return percent_decoded(equals == std::string_view::npos ? std::string_view() : pair.substr(equals + 1), true);
   }
   return std::nullopt;
 }

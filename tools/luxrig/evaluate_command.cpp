@@ -14,6 +14,7 @@
 #include "tools/luxrig/compute_arguments.h"
 #include "tools/luxrig/open_session.h"
 #include "tools/luxrig/transport_json.h"
+#include "tools/luxrig/uniformity_json.h"
 #include "tools/luxrig/vector_json.h"
 #include "tools/process/files.h"
 #include "tools/terminal/command.h"
@@ -99,10 +100,15 @@ int run_evaluate(const EvaluateArguments& arguments) {
     const Luxmeter& meter = rig.luxmeters[m];
     add(meter.name, meter.position_world_m, meter.normal_world, rig.points.size() + m, {}, {});
   }
+  std::vector<LuxEstimate> light;
+  for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(rig.points.size()); ++i)
+    light.push_back(estimate_of(lux[i], error[i]));
+  const std::vector<Uniformity> even = uniformities(rig, light);
   const int threads = thread_count(compute.threads);
   if (arguments.json) {
     nlohmann::ordered_json out = transport_json(used);
     out["points"] = std::move(points);
+    if (!even.empty()) out["uniformities"] = uniformities_json(even);
     out["rays"] = transport->rays;
     out["seconds"] = seconds;
     out["threads"] = threads;
@@ -115,6 +121,7 @@ int run_evaluate(const EvaluateArguments& arguments) {
         used.of_worst ? "of each point, with a margin" : "rms",
         used.error_floor_lx > 0 ? fmt::format(", or ± {:.2g} lx", used.error_floor_lx) : "", transport->rays, seconds,
         threads);
+    for (const Uniformity& one : even) fmt::print("by the model, {}\n", text_of(one));
   }
   if (const std::string warning = used.warning(); !warning.empty())
     fmt::print(stderr, "luxrig: warning: {}\n", warning);

@@ -10,7 +10,6 @@
 
 #include "core/goals/painting_file.h"
 #include "core/picture/rig_camera.h"
-#include "core/rig/points_csv.h"
 #include "core/rig/rig_file.h"
 #include "core/tasks/surface_goals.h"
 #include "core/text/nearest.h"
@@ -18,6 +17,7 @@
 #include "tools/command_line/completion.h"
 #include "tools/command_line/installed.h"
 #include "tools/luxrig/commands.h"
+#include "tools/luxrig/painting_files.h"
 #include "tools/luxrig/room_view.h"
 #include "tools/process/files.h"
 #include "tools/terminal/command.h"
@@ -86,14 +86,6 @@ Result<std::optional<Stroke>> stroke_of(const PaintArguments& arguments, const S
 int refuse(const std::string& why) {
   fmt::print(stderr, "luxrig: {}\n", why);
   return kExitBadInput;
-}
-
-Checked<std::vector<Stroke>> strokes_of(const SurfaceGoalSpec& goal) {
-  std::error_code error;
-  if (!std::filesystem::exists(goal.strokes_file, error) && !error) return std::vector<Stroke>{};
-  const auto text = read_file(goal.strokes_file);
-  if (!text) return tl::unexpected(text.error());
-  return painting_from_json(*text, goal.strokes_file.string());
 }
 
 /// What the goals ask of every surface in view, as a PNG; surfaces without paint are grey. A surface that two goals paint
@@ -179,11 +171,10 @@ Result<Row> paint_goal(const SurfaceGoalSpec& goal, std::vector<Stroke> strokes,
     strokes.assign(painted->painting->strokes().begin(), painted->painting->strokes().end());
   }
   const std::vector<Point> points = points_of(goal, *painted);
-  if (strokes_changed)
-    if (auto written = write_file(goal.strokes_file, painting_to_json(strokes)); !written)
-      return tl::unexpected(written.error());
-  if (auto written = write_file(goal.points_file(), points_csv(points, painted_version(goal))); !written)
-    return tl::unexpected(written.error());
+  // Strokes of a person's hand stay as they are written.
+  const auto written =
+      strokes_changed ? save_painting(goal, painting_to_json(strokes), points) : save_points(goal, points);
+  if (!written) return tl::unexpected(written.error());
   Row row{&goal, strokes.size(), points.size(), painted->area_m2(), painted->lux_range()};
   all.push_back(std::move(*painted));
   return row;

@@ -16,6 +16,7 @@
 #include "tools/luxrig/reasons_json.h"
 #include "tools/luxrig/render/opening_light.h"
 #include "tools/luxrig/transport_json.h"
+#include "tools/luxrig/uniformity_json.h"
 #include "tools/process/files.h"
 #include "tools/terminal/command.h"
 #include "tools/terminal/table.h"
@@ -30,6 +31,13 @@ struct SolveArguments {
   ComputeOptions compute;
   bool json = false, explain = false;
 };
+
+/// By the model, as the verdicts of the plan's points.
+std::vector<Uniformity> uniformities_of(const Rig& rig, const Plan& plan) {
+  std::vector<LuxEstimate> light;
+  for (const PlannedPoint& point : plan.points) light.push_back(estimate_of(point.lux, point.standard_error_lux));
+  return uniformities(rig, light);
+}
 
 std::string percent(double share) { return fmt::format("{:.1f} %", 100 * share); }
 
@@ -227,7 +235,8 @@ int run_solve(const SolveArguments& arguments) {
   add_opening_light(*solved, session->rig);
   if (const std::string warning = used.warning(); !warning.empty())
     fmt::print(stderr, "luxrig: warning: {}\n", warning);
-  std::string plan_json = with_transport(to_json(*plan), used);
+  const std::vector<Uniformity> even = uniformities_of(session->rig, *plan);
+  std::string plan_json = with_uniformities(with_transport(to_json(*plan), used), even);
   if (arguments.explain) plan_json = with_reasons(plan_json, solved->reasons);
   if (arguments.output) {
     if (const auto written = write_file(*arguments.output, plan_json); !written) return report(written.error());
@@ -289,6 +298,7 @@ int run_solve(const SolveArguments& arguments) {
           "which of the lamps that are on or off shall be on was not searched to the end: others could do better\n");
   }
   fmt::print("{}", opening_light_text(*plan, session->rig));
+  for (const Uniformity& one : even) fmt::print("{}\n", text_of(one));
   const auto kept =
       std::count_if(plan->limits.begin(), plan->limits.end(), [](const auto& limit) { return limit.met; });
   fmt::print("by the model, were the rig as its file says: {} ({}){}; in {:.2f} s{}\n", text_of(goals_of(*plan)),

@@ -49,6 +49,14 @@ void print_status(const json& status) {
                 text_of(p, "limit_reason").empty() ? text_of(p, "reason") : text_of(p, "limit_reason")});
   }
   fmt::print("\n{}\n{}\n{}", devices.text(), fixtures.text(), points.text());
+  if (!list_of(status, "uniformities").empty()) {
+    Table even({"surface goal", ">uniformity", ">from", ">to", ">wanted", "verdict"});
+    for (const json& u : list_of(status, "uniformities"))
+      even.row({text_of(u, "surface_goal"), shown(number_of(u, "uniformity"), "{:.2f}"),
+                shown(number_of(u, "low"), "{:.2f}"), shown(number_of(u, "high"), "{:.2f}"),
+                shown(number_of(u, "wanted"), "{:g}"), text_of(u, "verdict")});
+    fmt::print("\n{}", even.text());
+  }
   if (!list_of(status, "bypassed").empty()) {
     Table bypassed({"bypassed", ">for s", "risk"});
     for (const json& b : list_of(status, "bypassed"))

@@ -12,6 +12,7 @@
 #include "tools/command_line/installed.h"
 #include "tools/luxrigd/api/scene_file.h"
 #include "tools/luxrigd/api/status_json.h"
+#include "tools/luxrigd/painted_goals.h"
 #include "tools/luxrigd/scheduling.h"
 #include "tools/process/clock.h"
 
@@ -362,6 +363,7 @@ HttpHandlers Daemon::handlers() {
                       const std::lock_guard lock(mutex_);
                       return session_;
                     })](const HttpRequest& request) { return file->answer(request); };
+  handlers.painting = std::make_shared<PaintedGoals>([this] { return session(); });
   handlers.blackout = [this](bool on) { return blackout(on); };
   handlers.identify = [this](const std::string& name, double seconds) { return identify(name, seconds); };
   handlers.aim = [this](const std::string& name, const Joints& joints, double level, double seconds) {

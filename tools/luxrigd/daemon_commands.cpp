@@ -110,7 +110,11 @@ Result<void> Daemon::park(const std::vector<std::string>& names) {
 
 Result<std::string> Daemon::start_job(const std::string& kind) {
   if (!options_.solve) return refusal("this daemon cannot solve");
-  return jobs_.start(kind, [this, session = session()](const Watch& watch) -> Result<std::string> {
+  // The rig's files as they are when the job begins: goals may have been painted since they were read. The plan says for
+  // which rig it was made, and apply() whether that is the one in force.
+  return jobs_.start(kind, [this, file = session()->rig.file](const Watch& watch) -> Result<std::string> {
+    const auto session = open_session(file);
+    if (!session) return refusal(session.error().front().text());
     const auto plan = options_.solve(*session, watch);
     if (!plan) return tl::unexpected(plan.error());
     return to_json(*plan);

@@ -53,6 +53,7 @@ std::vector<std::filesystem::path> files_of(const Rig& rig) {
   for (const Luminaire& luminaire : rig.luminaires) add(luminaire.ies_path);
   for (const Fixture& fixture : rig.fixtures)
     if (fixture.mode) add(fixture.mode->file);
+  for (const SurfaceGoalSpec& goal : rig.surface_goals) add(goal.strokes_file);
   add(calibration_file(rig));
   return files;
 }

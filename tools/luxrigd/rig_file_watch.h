@@ -11,7 +11,7 @@
 
 namespace luxrig {
 
-/// The rig file, its meshes, photometry and makers' fixture files.
+/// The rig file, its meshes, photometry, makers' fixture files and strokes of painted goals.
 [[nodiscard]] std::vector<std::filesystem::path> files_of(const Rig& rig);
 
 class RigFileWatch {

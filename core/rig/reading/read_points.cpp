@@ -28,6 +28,8 @@ void RigReader::read_surface_goal(Section& s) {
   goal.strokes_file = folder / strokes;
   s.read("max_lx", goal.max_lx);
   s.read("weight", goal.weight);
+  goal.goal_rgb = read_goal_colour(s, fmt::format("the light of surface goal {},", in_quotes(goal.name)));
+  s.read("uniformity", goal.uniformity);
   s.read("goal_tolerance", goal.goal_tolerance);
   s.read("patch_m", goal.patch_m);
   s.read("min_spacing_m", goal.min_spacing_m);
@@ -44,22 +46,27 @@ void RigReader::read_surface_goal(Section& s) {
   if (!strokes.empty() && std::any_of(rig.surface_goals.begin(), rig.surface_goals.end(), same_file))
     return problems.add(in_file, fmt::format("another surface goal has the strokes {}", in_quotes(strokes)),
                         "give each its own file");
-  const auto points_file = goal.points_file();
   rig.surface_goals.push_back(goal);
   if (strokes.empty() || painted == PaintedPoints::left_out) return;
   const auto lay_out = [&](std::string what) {
     problems.add(in_file, std::move(what), fmt::format("lay out its points: luxrig paint {}", rig.file.string()));
   };
-  std::error_code error;
-  if (!std::filesystem::exists(points_file, error))
-    return lay_out(fmt::format("surface goal {} has no points yet", in_quotes(goal.name)));
-  auto table = load_points_csv(points_file, room_for_points(rig));
-  if (table.made_for != painted_version(goal))
-    return lay_out(fmt::format("the points of surface goal {} are of other strokes or settings", in_quotes(goal.name)));
-  add_points(std::move(table), points_file, in_file);
+  const std::string version = painted_version(goal);
+  bool any = false;
+  for (const auto& points_file : {goal.points_file(), next_points_file(goal)}) {
+    std::error_code error;
+    if (!std::filesystem::exists(points_file, error)) continue;
+    any = true;
+    auto table = load_points_csv(points_file, room_for_points(rig));
+    if (table.made_for == version)
+      return add_points(std::move(table), points_file, in_file, rig.surface_goals.size() - 1);
+  }
+  lay_out(any ? fmt::format("the points of surface goal {} are of other strokes or settings", in_quotes(goal.name))
+              : fmt::format("surface goal {} has no points yet", in_quotes(goal.name)));
 }
 
-void RigReader::add_points(PointsTable table, const std::filesystem::path& path, const FilePosition& in_file) {
+void RigReader::add_points(PointsTable table, const std::filesystem::path& path, const FilePosition& in_file,
+                           std::optional<std::size_t> surface_goal) {
   for (Problem& problem : table.problems) problems.add(std::move(problem));
   for (PointsTable::Row& row : table.rows) {
     row.point.in_file = in_file;
@@ -70,33 +77,39 @@ void RigReader::add_points(PointsTable table, const std::filesystem::path& path,
     } else {
       points.add(row.point.name, rig.points.size(), in_file, problems);
     }
-    if (row.goal_xy) set_goal_xy(row.point, *row.goal_xy, path.string(), row.in_file);
+    if (row.goal_xy)
+      row.point.goal_rgb = goal_colour(*row.goal_xy, path.string(), row.in_file,
+                                       fmt::format("the goal of point {},", in_quotes(row.point.name)));
+    row.point.surface_goal = surface_goal;
+    if (surface_goal && row.point.goal_lx) row.point.goal_rgb = rig.surface_goals[*surface_goal].goal_rgb;
     rig.points.push_back(std::move(row.point));
     point_places.emplace_back(path.string(), row.in_file);
   }
 }
 
-void RigReader::set_goal_xy(Point& point, const Chromaticity& xy, const std::string& file,
-                            const FilePosition& in_file) {
+Vec3 RigReader::goal_colour(const Chromaticity& xy, const std::string& file, const FilePosition& in_file,
+                            const std::string& whose) {
   const ColourWithin709 colour = within_rec709(rgb_of_xy(xy));
-  point.goal_rgb = colour.rgb;
-  if (colour.moved)
-    note_colour_moved(file, in_file, fmt::format("the goal of point {},", in_quotes(point.name)), xy, colour.rgb);
+  if (colour.moved) note_colour_moved(file, in_file, whose, xy, colour.rgb);
+  return colour.rgb;
 }
 
-void RigReader::read_goal(Section& s, Point& point) {
-  s.read("goal_lx", point.goal_lx);
+std::optional<Vec3> RigReader::read_goal_colour(Section& s, const std::string& whose) {
   Chromaticity xy;
   double cct_k = 0;
   const bool by_xy = s.read("goal_xy", xy), by_cct = s.read("goal_cct_k", cct_k);
   if (by_xy && by_cct) {
     problems.add(s.place_of("goal_cct_k"), "goal_xy and goal_cct_k both say what colour the goal has",
                  "remove one of the two");
-  } else if (by_xy) {
-    set_goal_xy(point, xy, problems.file(), s.place_of("goal_xy"));
-  } else if (by_cct) {
-    point.goal_rgb = rgb_of_cct(cct_k);
+    return std::nullopt;
   }
+  if (by_xy) return goal_colour(xy, problems.file(), s.place_of("goal_xy"), whose);
+  return by_cct ? std::optional(rgb_of_cct(cct_k)) : std::nullopt;
+}
+
+void RigReader::read_goal(Section& s, Point& point) {
+  s.read("goal_lx", point.goal_lx);
+  point.goal_rgb = read_goal_colour(s, fmt::format("the goal of point {},", in_quotes(point.name)));
   if (s.has("goal_lx")) return;
   for (const char* key : {"goal_xy", "goal_cct_k"})
     s.refuse(key, fmt::format("{} has no effect without goal_lx", key), "add goal_lx, or remove it");

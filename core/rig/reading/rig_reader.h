@@ -87,7 +87,8 @@ struct RigReader {
   void read_points_file(Section& section);
   void read_surface_goal(Section& section);
   /// Of a CSV file, for a line of the rig file.
-  void add_points(PointsTable table, const std::filesystem::path& path, const FilePosition& in_file);
+  void add_points(PointsTable table, const std::filesystem::path& path, const FilePosition& in_file,
+                  std::optional<std::size_t> surface_goal = {});
   void read_fixtures();
   void read_luxmeters();
   void read_daylight();
@@ -140,7 +141,10 @@ struct RigReader {
   std::vector<Luminaire> read_emitters(Section& section, const std::string& luminaire_name);
   static void add_up(const std::vector<Luminaire>& emitters, Luminaire& luminaire);
   void read_goal(Section& section, Point& point);
-  void set_goal_xy(Point& point, const Chromaticity& xy, const std::string& file, const FilePosition& in_file);
+  /// none = any
+  [[nodiscard]] std::optional<Vec3> read_goal_colour(Section& section, const std::string& whose);
+  [[nodiscard]] Vec3 goal_colour(const Chromaticity& xy, const std::string& file, const FilePosition& in_file,
+                                 const std::string& whose);
   void check_goal_colours();
   /// Reports a luminaire without watts, once.
   void need_watts_of(std::size_t luminaire, const FilePosition& in_file, const std::string& what);

@@ -84,8 +84,8 @@ std::string dump(const Rig& rig) {
         text_of(p.max_lx), text_of(p.goal_tolerance));
   }
   for (const SurfaceGoalSpec& g : rig.surface_goals)
-    add(g.name, g.strokes_file.string(), text_of(g.max_lx), g.weight, text_of(g.goal_tolerance), g.patch_m,
-        g.min_spacing_m, g.max_spacing_m);
+    add(g.name, g.strokes_file.string(), text_of(g.max_lx), g.weight, text_of(g.goal_rgb), text_of(g.uniformity),
+        text_of(g.goal_tolerance), g.patch_m, g.min_spacing_m, g.max_spacing_m);
   for (const auto& t : rig.tasks) {
     const PlacementSpec& p = t.placement;
     add(t.name, static_cast<int>(t.kind), p.luminaire, text_of(p.lights), p.max_lights, p.error_wanted, p.improvement,

@@ -111,6 +111,10 @@ name; position_m; goal_lx; goal_xy; rest
 name = "floor"; position_m = [0.5, 0, 0]
 [[point]]
 name = "spare"; position_m = [5, 0, 0]; goal_lx; goal_cct_k; goal_tolerance
+[[surface_goal]]
+name; strokes; goal_xy; rest
+[[surface_goal]]
+name = "wall"; strokes = "wall.json"; goal_cct_k
 [[task]]
 name; kind #> "placement" & luminaire = "track spot"; max_watts
 [[task]]

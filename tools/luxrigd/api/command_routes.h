@@ -19,6 +19,8 @@
 
 namespace luxrig {
 
+class PaintedGoals;
+
 /// The daemon's handlers. They are called from the server's threads; each must be safe to call from any thread.
 struct HttpHandlers {
   std::function<HttpResponse(const HttpRequest&)> session, login, logout;  ///< AccessRoutes sets them
@@ -65,6 +67,7 @@ struct HttpHandlers {
   std::function<std::vector<Job>()> jobs;
   /// nullopt: there is none of this id.
   std::function<std::optional<Job>(const std::string&id)> job, cancel_job;
+  std::shared_ptr<PaintedGoals> painting;  ///< null: this daemon has none
   /// Reloads the rig file, whole or not at all.
   std::function<Checked<std::string>()> reload;
 };
@@ -105,6 +108,12 @@ using Request = const HttpRequest&;
 [[nodiscard]] HttpResponse jobs(Handlers handlers, Request request);
 [[nodiscard]] HttpResponse job(Handlers handlers, Request request);
 [[nodiscard]] HttpResponse cancel_job(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse surface_goals(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse add_surface_goal(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse surface_goal(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse put_surface_goal(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse surface_patches(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse save_painting(Handlers handlers, Request request);
 [[nodiscard]] HttpResponse reload(Handlers handlers, Request request);
 
 }  // namespace answer_to

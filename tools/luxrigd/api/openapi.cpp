@@ -61,12 +61,14 @@ Schema operation(const ApiRoute& route) {
   if (const std::string path = route.path; path.back() == '}') {
     const std::size_t brace = path.find('{');
     out["parameters"].push_back(
-        parameter("path", path.substr(brace + 1, path.size() - brace - 2).c_str(), "of the job"));
+        parameter("path", path.substr(brace + 1, path.size() - brace - 2).c_str(), "which one, percent-encoded"));
     out["parameters"].back()["required"] = true;
   }
   for (const ApiParameter& one : route.parameters) out["parameters"].push_back(parameter("query", one.name, one.what));
   if (route.kept)
     out["parameters"].push_back(parameter("header", "If-None-Match", "ETag of the answer that the client has"));
+  if (route.matched)
+    out["parameters"].push_back(parameter("header", "If-Match", "ETag of the state that the client has changed"));
   if (!route.body.is_null())
     out["requestBody"] = {{"required", true},
                           {"x-max-bytes", route.max_body_bytes},

@@ -8,6 +8,7 @@
 
 #include "core/text/plain_text.h"
 #include "tools/luxrig/vector_json.h"
+#include "tools/luxrigd/api/command_limits.h"
 
 namespace luxrig {
 namespace {
@@ -19,7 +20,6 @@ constexpr std::size_t kLongestId = 40;
 constexpr std::size_t kLongestPlace = 400;
 /// A fixture of a housing is called "housing/emitter".
 constexpr std::size_t kLongestFixture = 2 * kLongestName + 1;
-constexpr double kFarthest_m = 1e5;
 constexpr double kLeastKnown = 1e3;
 constexpr int kMostSteps = 1'000'000;
 

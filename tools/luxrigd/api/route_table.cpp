@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "core/goals/stroke.h"
 #include "tools/luxrig/calibrate/hand_answer.h"
 #include "tools/luxrigd/api/command_limits.h"
 #include "tools/luxrigd/api/recorded.h"
@@ -22,7 +23,7 @@ Schema for_s() { return up_to(kLongestByHand_s, "held for so long; absent: until
 Schema fade_s() { return between(kShortestFade_s, kLongestFade_s, "how long it takes to get there"); }
 Schema place(const char* what) {
   Schema out = vector(what);
-  out["items"] = between(-1e5, 1e5);
+  out["items"] = between(-kFarthest_m, kFarthest_m);
   return out;
 }
 Schema short_text(int longest) { return {{"type", "string"}, {"minLength", 1}, {"maxLength", longest}}; }
@@ -69,6 +70,42 @@ Schema answer_body() {
 }
 
 Schema role_name() { return one_of_texts({"look", "operate", "configure"}); }
+Schema surface_place() {
+  return request(
+      {{"position", place("m, world, on the surface")}, {"normal", place("of length 1, to the side that is meant")}});
+}
+Schema stroke_body(const char* kind, const std::vector<Key>& keys) {
+  Schema path = list(surface_place(), 1);
+  if (std::string(kind) != name_of(StrokeKind::brush)) path["maxItems"] = 1;
+  return request(both({{"kind", one_of_texts({kind})}, {"path", path}}, keys));
+}
+Schema lux_of_stroke() { return between(0, kMaxStroke_lx); }
+Schema painting_body() {
+  const Schema stroke =
+      any_of({stroke_body(name_of(StrokeKind::brush),
+                          {{"lux", lux_of_stroke()}, {"radius_m", at_least(0)}, {"falloff", between(0, 1)}}),
+              stroke_body(name_of(StrokeKind::bucket), {{"lux", lux_of_stroke()}}),
+              stroke_body(name_of(StrokeKind::selective), {{"lux", lux_of_stroke()}}),
+              stroke_body(name_of(StrokeKind::eraser), {})});
+  return request({{"luxrig_painting", Schema{{"const", 1}}}, {"strokes", list(stroke)}});
+}
+Schema painting_answer() {
+  return answer({{"name", text()},
+                 {"version", text("the ETag without its quotes")},
+                 {"saved", yes_or_no("the goal's file has these strokes")},
+                 {"luxrig_painting", Schema{{"const", 1}}},
+                 {"strokes", list(Schema{{"type", "object"}})}});
+}
+Schema surface_goal_answer() {
+  return answer({{"name", text()},
+                 {"version", text("of its strokes")},
+                 {"strokes", count()},
+                 {"saved", yes_or_no("its file has these strokes")},
+                 {"in_force", yes_or_no("false: it waits for a reload")},
+                 {"patch_m", number()},
+                 maybe("max_lux", number()),
+                 maybe("trouble", text("its strokes cannot be read, and why"))});
+}
 
 Schema done(const char* key) { return answer({{key, yes()}, {"text", text("for a person, in lines")}}); }
 
@@ -81,6 +118,14 @@ ApiAnswer failed() { return {500, "the disk or a bus has not taken it: the text 
 
 ApiAnswer being_drawn() { return {503, "the room is being drawn: ask again in a second", ref("Refusal")}; }
 
+ApiAnswer no_surface_goal() { return {404, "the rig has no such surface goal", ref("Refusal")}; }
+ApiAnswer not_cut_yet() {
+  return {503, "the surfaces are being cut into patches: ask again in a second", ref("Refusal")};
+}
+ApiAnswer files_differ() {
+  return {409, "the rig's files are not as they were read, or do not allow it", ref("Refusal")};
+}
+
 ApiAnswer no_job() { return {404, "there is no such job", ref("Refusal")}; }
 
 /// With an ETag.
@@ -91,6 +136,15 @@ ApiRoute kept(ApiRoute route) {
 }
 ApiRoute slow(ApiRoute route) {
   route.slow = true;
+  return route;
+}
+/// With If-Match.
+ApiRoute matched(ApiRoute route) {
+  Schema stale = painting_answer();
+  stale["properties"]["error"] = text("for a person");
+  stale["required"].push_back("error");
+  route.answers.push_back({412, "it has other strokes than If-Match says: these", stale});
+  route.matched = true;
   return route;
 }
 ApiRoute with(std::vector<ApiParameter> parameters, ApiRoute route) {
@@ -338,6 +392,59 @@ std::vector<ApiRoute> made_table() {
         {409, "it is not asked any more, or has been answered", ref("Refusal")}},
        answer_to::answer,
        kMaxShortBytes},
+      {"GET",
+       "/api/surface-goals",
+       look,
+       "goals that are painted on surfaces",
+       none,
+       {ok(list(surface_goal_answer()), "a list of them")},
+       answer_to::surface_goals},
+      {"POST",
+       "/api/surface-goals",
+       configure,
+       "a new one, without strokes, at the end of the rig file; in force after a reload",
+       request({{"name", short_text(100)}, maybe("max_lux", between(0, 1e7))}),
+       {ok(answer({{"added", yes()}}), "it is in the rig file"), refused(), files_differ(), being_drawn(), failed()},
+       answer_to::add_surface_goal},
+      {"GET",
+       "/api/surface-goals/{name}",
+       look,
+       "the strokes of a surface goal, with an ETag",
+       none,
+       {ok(painting_answer(), "its strokes"), no_surface_goal(), files_differ()},
+       answer_to::surface_goal},
+      matched(
+          {"PUT",
+           "/api/surface-goals/{name}",
+           operate,
+           "makes these a surface goal's strokes, until they are saved in memory alone; the light does not change",
+           painting_body(),
+           {ok(answer({{"version", text("the new ETag without its quotes")},
+                       {"strokes", count()},
+                       {"patches", list(count())},
+                       {"lux", list(or_null(number()))}}),
+               "patches whose lux changed, as GET /api/surface-patches/{name} counts them; null: no longer painted"),
+            refused(), no_surface_goal(), files_differ(), not_cut_yet()},
+           answer_to::put_surface_goal,
+           kMaxPaintingBytes}),
+      kept({"GET",
+            "/api/surface-patches/{name}",
+            look,
+            "the patches of a surface goal's surfaces and their lux, as tools/luxrigd/api/patch_file.h has them",
+            none,
+            {{200, "the patches", nullptr, "application/octet-stream"},
+             no_surface_goal(),
+             files_differ(),
+             {413, "they are too many for a browser", ref("Refusal")},
+             not_cut_yet()},
+            answer_to::surface_patches}),
+      {"POST",
+       "/api/save-painting",
+       operate,
+       "writes strokes and points of surface goals, or of all, beside the rig file; a reload or a job asks for them",
+       request({maybe("goals", list(name_of_a("surface goal")))}),
+       {ok(done("saved"), "they are on disk"), refused(), no_surface_goal(), files_differ(), failed(), not_cut_yet()},
+       answer_to::save_painting},
       {"POST",
        "/api/reload",
        configure,

@@ -37,8 +37,9 @@ struct ApiRoute {
   bool urgent = false;  ///< never queues behind other requests
   bool events = false;  ///< a stream of server-sent events
   std::vector<ApiParameter> parameters{};
-  bool kept = false;  ///< has an ETag, and 304 for If-None-Match
-  bool slow = false;  ///< HttpRoute::slow
+  bool kept = false;     ///< has an ETag, and 304 for If-None-Match
+  bool slow = false;     ///< HttpRoute::slow
+  bool matched = false;  ///< heeds If-Match, with 412
 };
 
 [[nodiscard]] const std::vector<ApiRoute>& route_table();

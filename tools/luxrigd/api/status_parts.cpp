@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "tools/luxrig/addresses.h"
+#include "tools/luxrig/uniformity_json.h"
 #include "tools/luxrig/vector_json.h"
 #include "tools/luxrigd/api/question_json.h"
 
@@ -215,6 +216,10 @@ json StatusParts::rest() const {
   if (!rig.calibrated.empty()) out["calibrated"] = rig.calibrated;
   if (input_.question) out["question"] = asked(*input_.question);
   put_counts(out, show, rig.control.goal_tolerance);
+  std::vector<LuxEstimate> light;
+  for (const PointStatus& point : show.points) light.push_back(point.light);
+  if (light.size() == rig.points.size())
+    if (const auto even = uniformities(rig, light); !even.empty()) out["uniformities"] = uniformities_json(even);
   out["alarms"] = alarms();
   out["overrides"] = overrides();
   out["bypassed"] = bypassed();

@@ -161,6 +161,12 @@ Schema asked(Told told) {
 Keys rest_of_status(Told told) {
   const Schema goals =
       answer({{"met", count()}, {"missed", count()}, {"unknown", count()}, {"tolerance", at_least(0)}});
+  const Schema uniformity = answer({{"surface_goal", text()},
+                                    {"uniformity", between(0, 1, "lowest over mean illuminance at its points")},
+                                    {"low", between(0, 1, "of its interval")},
+                                    {"high", between(0, 1)},
+                                    {"wanted", between(0, 1)},
+                                    {"verdict", one_of_texts({"met", "missed", "unknown"})}});
   const Schema limits = answer({{"kept", count()}, {"exceeded", count()}, {"unknown", count()}});
   const Schema output = answer({{"rate_hz", at_least(0)},
                                 {"frames", count()},
@@ -191,6 +197,7 @@ Keys rest_of_status(Told told) {
           maybe("calibrated", text("time of the calibration in use")),
           maybe("question", asked(told)),
           {"goals", goals},
+          maybe("uniformities", list(uniformity)),
           {"limits", limits},
           {"alarms", list(alarm)},
           {"overrides", list(override(told))},

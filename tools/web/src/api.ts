@@ -137,20 +137,22 @@ export interface Room {
   picture?: string; // path on this server
 }
 
-type Fields = Record<string, unknown>;
+export type Fields = Record<string, unknown>;
 
-const fieldsOf = (value: unknown): Fields =>
-  typeof value === 'object' && value !== null && !Array.isArray(value) ? (value as Fields) : {};
-const listOf = (value: unknown): Fields[] => (Array.isArray(value) ? value.map(fieldsOf) : []);
-const text = (value: unknown): string => (typeof value === 'string' ? value : '');
-const number = (value: unknown): number | undefined =>
-  typeof value === 'number' && Number.isFinite(value) ? value : undefined;
+export const fieldsOf = (value: unknown): Fields =>
+    typeof value === 'object' && value !== null && !Array.isArray(value) ? (value as Fields) : {};
+export const listOf = (value: unknown): Fields[] => (Array.isArray(value) ? value.map(fieldsOf) : []);
+export const text = (value: unknown): string => (typeof value === 'string' ? value : '');
+export const number = (value: unknown): number|undefined =>
+    typeof value === 'number' && Number.isFinite(value) ? value : undefined;
 
 function vector(value: unknown): Vec3 | undefined {
   if (!Array.isArray(value) || value.length !== 3) return undefined;
   const [x, y, z] = value.map(number);
   return x === undefined || y === undefined || z === undefined ? undefined : [x, y, z];
 }
+
+export const isVec3 = (value: unknown): value is Vec3 => vector(value) !== undefined;
 
 /** Copies the named numbers that are there; an absent one stays absent. */
 function numbers<K extends string>(from: Fields, ...keys: K[]): Partial<Record<K, number>> {
@@ -371,7 +373,7 @@ export async function fetchChanges(): Promise<Change[]|undefined> {
 }
 
 /** Resolves with the daemon's answer once it has acknowledged; rejects with a sentence for a person. */
-async function post(route: string, body: Fields, within_ms = 3000): Promise<Fields> {
+export async function post(route: string, body: Fields, within_ms = 3000): Promise<Fields> {
   const stop = new AbortController();
   const timer = setTimeout(() => stop.abort(), within_ms);
   try {

@@ -49,12 +49,13 @@ export function roundStep(span: number): number {
 }
 
 /** Goal, predicted and measured share one scale, from 0 to a round number above all of them, so that colours of one mean
- *  the same in the others. `before`: kept while it still fits, as the lux change five times a second. */
-export function scaleOf(layer: Layer, points: readonly Point[], before?: LuxScale): LuxScale|undefined {
+ *  the same in the others. `before`: kept while it still fits, as the lux change five times a second. `painted`: the most
+ *  that is painted, which the scale has to reach, too. */
+export function scaleOf(layer: Layer, points: readonly Point[], before?: LuxScale, painted = 0): LuxScale|undefined {
   if (layer === 'verdict') return undefined;
   const shared = layer === 'goal' || layer === 'predicted' || layer === 'measured';
   const layers: Layer[] = shared ? ['goal', 'predicted', 'measured'] : [layer];
-  let most = 0;
+  let most = shared ? painted : 0;
   for (const one of layers)
     for (const point of points) most = Math.max(most, Math.abs(layerLux(one, point) ?? 0));
   const signed = layer === 'difference';

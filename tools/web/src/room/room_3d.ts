@@ -1,7 +1,7 @@
 /** The room in three dimensions: what is drawn, what the pointer is on, and the keys. Loaded when it is asked for, with
  *  three. Draws only when something has changed. */
 
-import {Box3, Color, DirectionalLight, HemisphereLight, Ray, Raycaster, Scene, Vector2, Vector3, WebGLRenderer} from 'three';
+import {Box3, Color, DirectionalLight, type Group, HemisphereLight, Ray, Raycaster, Scene, Vector2, Vector3, WebGLRenderer} from 'three';
 import type {Point, Room, Status, Vec3} from '../api';
 import {element, setAttribute, setText} from '../dom';
 import * as format from '../format';
@@ -34,6 +34,23 @@ type Hit = {
   x: number;
   y: number
 };
+
+/** What takes the pointer and keys before the room does, and is drawn with it. */
+export interface Painter {
+  readonly group: Group;
+  /** The most that is painted [lx]: the scale reaches it. */
+  readonly most: number;
+  /** hit: of the surface under the pointer; undefined: none is. */
+  down: (hit: SurfaceHit|undefined) => void;
+  /** Dragging, or only above it. */
+  move: (hit: SurfaceHit|undefined, dragging: boolean) => void;
+  /** taken_back: a second finger came, to move the room. */
+  up: (taken_back: boolean) => void;
+  /** True if the key was the painter's. middle: what is in the middle of the picture. */
+  key: (event: KeyboardEvent, middle: () => SurfaceHit | undefined) => boolean;
+  /** After a change of the scale or the scene. */
+  look: (scale: LuxScale|undefined, origin: Vec3) => void;
+}
 
 export class Room3d {
   readonly root = element('div', {
@@ -75,6 +92,8 @@ export class Room3d {
   private byKeys = false;
   private press: {timer: number; x: number; y: number}|undefined;
   private frames = 0;
+  private painter: Painter|undefined;
+  private paints = false;  // the pointer is down
   onScale: (layer: Layer, scale: LuxScale|undefined) => void = () => undefined;
   onLost: () => void = () => undefined;
 
@@ -149,10 +168,11 @@ export class Room3d {
         this.hasBox = true;
       }
     }
-    const scale = scaleOf(this.layer, status.points, this.scale);
+    const scale = scaleOf(this.layer, status.points, this.scale, this.painter?.most);
     if (scale !== this.scale) {
       this.scale = scale;
       this.onScale(this.layer, scale);
+      this.painter?.look(scale, this.origin);
     }
     const bright = (status.blackout ? 0.3 : 1) * this.bright;
     this.sky.intensity = 1.9 * bright;
@@ -179,6 +199,26 @@ export class Room3d {
     this.change();
     return side;
   }
+
+  /** Undefined: a person looks, and no longer paints. */
+  setPainter(painter: Painter|undefined): void {
+    if (this.painter) this.scene.remove(this.painter.group);
+    this.painter = painter;
+    this.pointer = this.probe = undefined;
+    this.look.setPainting(painter !== undefined);
+    this.root.classList.toggle('paints', painter !== undefined);
+    if (painter) this.scene.add(painter.group);
+    this.painted();
+  }
+
+  /** What the painter shows has changed. */
+  painted(): void {
+    if (this.status) this.show(this.status, undefined, true);
+    this.painter?.look(this.scale, this.origin);
+    this.change();
+  }
+
+  private surfaceAt(x: number, y: number): SurfaceHit|undefined { return this.surfaces?.under(this.rayThrough(x, y)); }
 
   private change(news = false): void {
     this.dirty = true;
@@ -367,6 +407,10 @@ export class Room3d {
     };
     this.canvas.addEventListener('pointermove', (event) => {
       const now = at(event);
+      if (this.painter && (event.isPrimary || this.paints)) {
+        this.painter.move(this.surfaceAt(now.x, now.y), this.paints);
+        return this.change();
+      }
       if (this.press && Math.hypot(now.x - this.press.x, now.y - this.press.y) > PRESS_MOVES_PX) drop();
       if (event.pointerType !== 'mouse' || event.buttons) return;
       this.pointer = now;
@@ -375,6 +419,17 @@ export class Room3d {
     this.canvas.addEventListener('pointerdown', (event) => {
       drop();
       const now = at(event);
+      if (this.painter) {
+        if (event.isPrimary && event.button === 0) {
+          this.paints = true;
+          this.canvas.setPointerCapture(event.pointerId);
+          this.painter.down(this.surfaceAt(now.x, now.y));
+        } else if (this.paints && !event.isPrimary) {
+          this.paints = false;
+          this.painter.up(true);
+        }
+        return this.change();
+      }
       if (event.pointerType === 'mouse') return;
       if (!event.isPrimary) return;  // a second finger: it moves the room
       const timer = window.setTimeout(() => {
@@ -385,6 +440,11 @@ export class Room3d {
       this.press = {timer, ...now};
     });
     this.canvas.addEventListener('pointerup', (event) => {
+      if (this.paints && event.isPrimary) {
+        this.paints = false;
+        this.painter?.up(false);
+        return this.change();
+      }
       // A tap on a sign is as good; beside one it puts the card away.
       if (this.press && event.pointerType !== 'mouse') {
         this.pick(at(event), 1.6 * PICK_PX);
@@ -393,12 +453,21 @@ export class Room3d {
       }
       drop();
     });
-    this.canvas.addEventListener('pointercancel', drop);
+    this.canvas.addEventListener('pointercancel', () => {
+      drop();
+      if (this.paints) this.painter?.up(true);
+      this.paints = false;
+    });
     this.canvas.addEventListener('contextmenu', (event) => event.preventDefault());
     this.canvas.addEventListener('pointerleave', (event) => {
       if (event.pointerType === 'mouse') forget();
     });
     this.root.addEventListener('keydown', (event) => {
+      const middle = (): SurfaceHit|undefined => this.surfaceAt(this.root.clientWidth / 2, this.root.clientHeight / 2);
+      if (this.painter?.key(event, middle)) {
+        event.preventDefault();
+        return this.change();
+      }
       if (event.ctrlKey || event.metaKey || event.altKey) return;
       const key = event.key.toLowerCase();
       if (key === 'n' || key === 'p')

@@ -8,6 +8,7 @@ import {PlanView} from '../views/plan';
 import {LAYERS, type Layer} from './layers';
 import {LuxLegend} from './lux_legend';
 import type {MadeRoom} from './made_room';
+import type {Paint} from './paint';
 import type {Room3d} from './room_3d';
 import {type View, VIEW_NAMES} from './view_names';
 
@@ -20,6 +21,9 @@ export class RoomCard {
   private readonly stage = element('div', {class: 'room-stage', hidden: ''});
   private readonly tools = element('div', {class: 'room-tools', hidden: ''});
   private readonly keys = keysHelp();
+  private readonly layers = element('select', {id: 'room-layer'});
+  private readonly paintPlace = element('div', {hidden: ''});
+  private paint: Paint|undefined;
   private readonly scale = new LuxLegend();
   private readonly ways = new Map<'plan'|'room', HTMLButtonElement>();
   private readonly views = new Map<View, HTMLButtonElement>();
@@ -41,10 +45,10 @@ export class RoomCard {
       this.ways.set(way, button);
       ways.append(button);
     }
-    this.tools.append(this.viewButtons(), this.layerChoice());
+    this.tools.append(this.viewButtons(), this.layerChoice(), this.paintButton());
     this.root = card(
-        'plan', 'Room', ways, this.said, this.tools, this.stage, this.scale.root, this.plan.root, this.plan.legend,
-        this.keys);
+        'plan', 'Room', ways, this.said, this.tools, this.paintPlace, this.stage, this.scale.root, this.plan.root,
+        this.plan.legend, this.keys);
     try {
       if (localStorage.getItem(REMEMBERED) === 'room') void this.choose('room');
     } catch {
@@ -88,6 +92,7 @@ export class RoomCard {
     for (const [name, button] of this.ways) setAttribute(button, 'aria-pressed', String(name === way));
     const solid = way === 'room' && this.solid !== undefined;
     for (const part of [this.stage, this.tools, this.keys]) part.hidden = !solid;
+    this.paintPlace.classList.toggle('off', !solid);
     this.plan.root.hidden = solid;
     this.scale.root.classList.toggle('off', !solid);
     if (!this.status) return;
@@ -166,15 +171,45 @@ export class RoomCard {
   }
 
   private layerChoice(): HTMLElement {
-    const select = element(
-        'select', {id: 'room-layer'},
-        ...Object.entries(LAYERS).map(([value, words]) => element('option', {value}, words)));
-    select.addEventListener('change', () => {
-      this.layer = select.value as Layer;
-      this.solid?.setLayer(this.layer);
-    });
-    return element('div', {class: 'room-layer'}, element('label', { for: 'room-layer'
-                   }, 'At the points'), select);
+    const {layers} = this;
+    layers.append(...Object.entries(LAYERS).map(([value, words]) => element('option', {value}, words)));
+    layers.addEventListener('change', () => this.setLayer(layers.value as Layer));
+    return element('div', {class: 'room-layer'}, element('label', {for: 'room-layer'
+                   }, 'At the points'), layers);
+  }
+
+  private setLayer(layer: Layer): void {
+    this.layer = this.layers.value = layer;
+    this.solid?.setLayer(layer);
+  }
+
+  private paintButton(): HTMLElement {
+    const button = element('button', {type: 'button', id: 'paint-mode', 'aria-pressed': 'false'}, 'Paint goals');
+    button.addEventListener('click', () => void this.setPainting(button));
+    return element('div', {class: 'filters'}, button);
+  }
+
+  /** Painting is fetched when it is first asked for. */
+  private async setPainting(button: HTMLButtonElement): Promise<void> {
+    const on = button.getAttribute('aria-pressed') !== 'true';
+    const {solid} = this;
+    if (!solid) return;
+    setAttribute(button, 'aria-pressed', String(on));
+    if (on && !this.paint) {
+      const made = await import('./paint').catch(() => undefined);
+      if (!made) {
+        setAttribute(button, 'aria-pressed', 'false');
+        return this.say('Painting could not be fetched. Press Paint goals to try again.');
+      }
+      this.paint = new made.Paint(solid);
+      this.paintPlace.replaceChildren(this.paint.panel.root);
+    }
+    this.paintPlace.hidden = !on;
+    // On a phone below the picture, so that both are in sight.
+    this.stage[window.matchMedia('(max-width: 640px)').matches ? 'after' : 'before'](this.paintPlace);
+    if (!on) return this.paint?.end();
+    this.setLayer('goal');  // patches and points have its scale
+    await this.paint?.begin();
   }
 }
 

@@ -22,6 +22,7 @@ export class RoomCamera {
   private readonly box = new Box3(new Vector3(-5, -5, 0), new Vector3(5, 5, 3));
   private aspect = 1;
   private quarter = 0;  // of `side`
+  private painting = false;
   view: View = 'orbit';
 
   constructor(canvas: HTMLElement, private readonly smooth: boolean) {
@@ -70,15 +71,13 @@ export class RoomCamera {
     controls.maxDistance = view === 'walk' ? AT_HAND_M : 4 * size.length() + 10;
     controls.minZoom = 0.4;
     controls.maxZoom = 40;
-    controls.mouseButtons.left = flat ? CameraControls.ACTION.TRUCK : CameraControls.ACTION.ROTATE;
-    controls.mouseButtons.right = CameraControls.ACTION.TRUCK;
     controls.mouseButtons.wheel = flat ? CameraControls.ACTION.ZOOM :
         view === 'walk'                ? CameraControls.ACTION.NONE :
                                          CameraControls.ACTION.DOLLY;
-    controls.touches.one = flat ? CameraControls.ACTION.TOUCH_TRUCK : CameraControls.ACTION.TOUCH_ROTATE;
     controls.touches.two = flat ? CameraControls.ACTION.TOUCH_ZOOM_TRUCK :
         view === 'walk'         ? CameraControls.ACTION.TOUCH_TRUCK :
                                   CameraControls.ACTION.TOUCH_DOLLY_TRUCK;
+    this.setButtons();
     const glide = smoothly && !changed;  // another lens has no way from here to there
     if (view === 'walk') {
       const eye = Math.min(box.min.z + EYES_M, middle.z);
@@ -97,6 +96,21 @@ export class RoomCamera {
       void controls.setLookAt(eye.x, eye.y, eye.z, target.x, target.y, target.z, glide);
     }
     void controls.setFocalOffset(0, 0, 0, false);
+  }
+
+  /** While a person paints, the left button and one finger are the brush's: the right button turns the room. */
+  setPainting(on: boolean): void {
+    this.painting = on;
+    this.setButtons();
+  }
+
+  private setButtons(): void {
+    const {controls, painting} = this;
+    const {ROTATE, TRUCK, TOUCH_TRUCK, TOUCH_ROTATE, NONE} = CameraControls.ACTION;
+    const flat = this.view === 'above' || this.view === 'side';
+    controls.mouseButtons.left = painting ? NONE : flat ? TRUCK : ROTATE;
+    controls.mouseButtons.right = painting && !flat ? ROTATE : TRUCK;
+    controls.touches.one = painting ? NONE : flat ? TOUCH_TRUCK : TOUCH_ROTATE;
   }
 
   /** The next side, of the view from a side. */
