@@ -15,6 +15,14 @@ export interface Fixture {
   drive?: number; // 0…1 on the wire
   gain?: number; // estimated true output over rated
   gain_standard_error?: number;
+  pan_deg?: number;
+  tilt_deg?: number;
+  max_level?: number; // 0…1
+  mount_axes?: readonly Vec3[]; // x, y and z of its mount in the world
+  moves?: true; // a head
+  parks?: true; // it has a place to rest
+  identified?: true; // it shows which one it is
+  aimed_by_hand?: true;
   parked?: true; // it rests, dark
   kept_dark?: true; // its beam could meet a keep-out zone
   waits_for?: string; // parked or kept dark: what lights it again
@@ -135,13 +143,13 @@ export interface Room {
   picture?: string; // path on this server
 }
 
-type Fields = Record<string, unknown>;
+export type Fields = Record<string, unknown>;
 
-const fieldsOf = (value: unknown): Fields =>
+export const fieldsOf = (value: unknown): Fields =>
   typeof value === 'object' && value !== null && !Array.isArray(value) ? (value as Fields) : {};
-const listOf = (value: unknown): Fields[] => (Array.isArray(value) ? value.map(fieldsOf) : []);
-const text = (value: unknown): string => (typeof value === 'string' ? value : '');
-const number = (value: unknown): number | undefined =>
+export const listOf = (value: unknown): Fields[] => (Array.isArray(value) ? value.map(fieldsOf) : []);
+export const text = (value: unknown): string => (typeof value === 'string' ? value : '');
+export const number = (value: unknown): number | undefined =>
   typeof value === 'number' && Number.isFinite(value) ? value : undefined;
 
 function vector(value: unknown): Vec3 | undefined {
@@ -151,7 +159,7 @@ function vector(value: unknown): Vec3 | undefined {
 }
 
 /** Copies the named numbers that are there; an absent one stays absent. */
-function numbers<K extends string>(from: Fields, ...keys: K[]): Partial<Record<K, number>> {
+export function numbers<K extends string>(from: Fields, ...keys: K[]): Partial<Record<K, number>> {
   const found: Partial<Record<K, number>> = {};
   for (const key of keys) {
     const value = number(from[key]);
@@ -169,8 +177,19 @@ function vectors<K extends string>(from: Fields, ...keys: K[]): Partial<Record<K
   return found;
 }
 
+function axes(value: unknown): {mount_axes?: readonly Vec3[]} {
+  if (!Array.isArray(value) || value.length !== 3) return {};
+  const all = value.map(vector);
+  return all.every((one) => one !== undefined) ? {mount_axes: all as Vec3[]} : {};
+}
+
+/** Copies the named keys that are true. */
+function flags<K extends string>(from: Fields, ...keys: K[]): Partial<Record<K, true>> {
+  return Object.fromEntries(keys.filter((key) => from[key] === true).map((key) => [key, true])) as Partial<Record<K, true>>;
+}
+
 /** One of these words; any other is none. */
-function oneOf<K extends string, W extends string>(from: Fields, key: K, words: readonly W[]): Partial<Record<K, W>> {
+export function oneOf<K extends string, W extends string>(from: Fields, key: K, words: readonly W[]): Partial<Record<K, W>> {
   const found = words.find((word) => word === from[key]);
   return found === undefined ? {} : ({ [key]: found } as Record<K, W>);
 }
@@ -212,7 +231,9 @@ export function readStatus(value: unknown): Status | undefined {
                                     bus: text(f['bus']),
                                     address: text(f['address']),
                                     ...vectors(f, 'position', 'aim'),
-                                    ...numbers(f, 'level', 'target_level', 'drive', 'gain', 'gain_standard_error'),
+                                    ...numbers(f, 'level', 'target_level', 'drive', 'gain', 'gain_standard_error', 'pan_deg', 'tilt_deg', 'max_level'),
+                                    ...axes(f['mount_axes']),
+                                    ...flags(f, 'moves', 'parks', 'identified', 'aimed_by_hand'),
                                     level_known: f['level_known'] !== false,
                                     ...(f['parked'] === true ? {parked: true as const} : {}),
                                     ...(f['kept_dark'] === true ? {kept_dark: true as const} : {}),
@@ -311,7 +332,7 @@ export async function fetchScene(): Promise<{glb: ArrayBuffer; etag: string}|'no
 /** Whether the daemon knows this browser; true also while it does not answer at all. */
 export async function isKnown(): Promise<boolean> {
   try {
-    const answer = await fetch('/api/session', { cache: 'no-store' });
+    const answer = await fetch('/api/session', { cache: 'no-store', signal: AbortSignal.timeout(2000) });
     return !answer.ok || fieldsOf(await answer.json())['open'] !== false;
   } catch {
     return true;
@@ -319,9 +340,9 @@ export async function isKnown(): Promise<boolean> {
 }
 
 /** Resolves with the daemon's answer once it has acknowledged; rejects with a sentence for a person. */
-async function post(route: string, body: Fields): Promise<Fields> {
+export async function post(route: string, body: Fields, within_s = 3): Promise<Fields> {
   const stop = new AbortController();
-  const timer = setTimeout(() => stop.abort(), 3000);
+  const timer = setTimeout(() => stop.abort(), 1000 * within_s);
   try {
     const answer = await fetch(route, {
       method: 'POST',
@@ -333,7 +354,7 @@ async function post(route: string, body: Fields): Promise<Fields> {
     if (!answer.ok) throw new Error(text(said['error']) || `the daemon answered ${answer.status}`);
     return said;
   } catch (error) {
-    if (stop.signal.aborted) throw new Error('the daemon did not answer within 3 s');
+    if (stop.signal.aborted) throw new Error(`the daemon did not answer within ${within_s} s`);
     if (error instanceof TypeError) throw new Error('the daemon cannot be reached');
     throw error;
   } finally {

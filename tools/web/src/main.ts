@@ -13,6 +13,7 @@ import { HeaderView } from './views/header';
 import {OutputView} from './views/output';
 import { PointsTable } from './views/points_table';
 import {QuestionView} from './views/question';
+import {SolveView} from './views/solve';
 import { themeButton } from './views/theme';
 import { TilesView } from './views/tiles';
 
@@ -22,6 +23,7 @@ const alarms = new AlarmsView();
 const question = new QuestionView();
 const tiles = new TilesView();
 const room = new RoomCard(selection);
+const solve = new SolveView();
 const points = new PointsTable(selection);
 const fixtures = new FixturesView(selection);
 const byHand = new ByHandView();
@@ -32,7 +34,7 @@ const output = new OutputView();
 const main = element(
     'main',
     {},
-    element('div', {class: 'column wide'}, room.root, points.root),
+    element('div', {class: 'column wide'}, room.root, solve.root, points.root),
     element('div', {class: 'column'}, tiles.root, fixtures.root, byHand.root, meters.root, devices.root, output.root),
 );
 document.getElementById('app')!.replaceChildren(header.root, alarms.root, question.root, main);
@@ -67,6 +69,7 @@ follow(
     question.show(status.question);
     tiles.show(status);
     room.show(status);
+    solve.show(status);
     points.show(status.points);
     fixtures.show(status.fixtures);
     byHand.show(status);
