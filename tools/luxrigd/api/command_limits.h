@@ -9,6 +9,8 @@ inline constexpr double kIdentifyAtMost_s = 60;  ///< and a head aimed by hand
 inline constexpr double kLongestByHand_s = 366.0 * 86400;
 inline constexpr double kShortestFade_s = 0.1, kLongestFade_s = 600;
 inline constexpr double kLongestAsked_s = 600;
+inline constexpr double kFarthestAim_m = 1e5;
+inline constexpr const char* kQuestionId = "^[0-9A-Za-z_-]{1,40}$";  ///< is_question_id()
 inline constexpr std::size_t kMaxPlanBytes = 16u << 20;
 inline constexpr std::size_t kMaxShortBytes = 1024;  ///< of a body with a few keys
 
