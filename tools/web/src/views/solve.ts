@@ -103,9 +103,12 @@ export class SolveView {
     setAttribute(this.start, 'disabled', '');
     this.say('');
     try {
-      this.watch(await plans.startSolve());
+      const id = await plans.startSolve();
+      this.watch(id);
       this.result.hidden = true;
-      this.job = this.plan = undefined;
+      this.plan = undefined;
+      this.job = {id, state: 'runs', stage: '', doing: '', why: '', can_be_taken: false};
+      this.showJob();
       await this.look();
     } catch (error) {
       this.say(`Not started: ${words(error)}.`);
