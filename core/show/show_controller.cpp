@@ -241,6 +241,7 @@ void ShowController::State::start_cue(Time now, std::vector<double> levels, std:
       return;
     }
     present = std::move(without);
+    if (!fade_s) fade_s = awaited->fade_s;
     take_look(now);
   }
   asked = with_hands(*cue);
@@ -385,7 +386,7 @@ void ShowController::apply(Time now, std::span<const double> levels) {
   apply(now, std::move(look), {});
 }
 
-void ShowController::apply(Time now, Look look, LightModel model) {
+void ShowController::apply(Time now, Look look, LightModel model, std::optional<double> fade_s) {
   State& state = *state_;
   now = state.at_least_last(now);
   LUXRIG_CHECK(look.joints.size() == state.rig.fixtures.size() && look.goal_lx.size() == state.rig.points.size(),
@@ -400,7 +401,7 @@ void ShowController::apply(Time now, Look look, LightModel model) {
   state.faults.forget();
   state.first_turn(now, look.joints);
   state.take_levels_of_plan(now, wanted, look);
-  state.awaited = {std::move(look), std::move(model)};
+  state.awaited = {std::move(look), std::move(model), fade_s};
   state.start_cue(now, std::move(wanted));
 }
 

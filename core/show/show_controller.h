@@ -140,7 +140,8 @@ class ShowController {
   /// Applies a look with other aims and goals. model: for the joints of the look. Heads that move fade out, turn in the
   /// dark and fade in where they arrive, so no beam crosses a limited place on its way. The first time, their position
   /// is not known, and the light waits for their longest way. What meters have taught is kept while no head turns.
-  void apply(Time now, Look look, LightModel model);
+  /// fade_s: as for hold().
+  void apply(Time now, Look look, LightModel model, std::optional<double> fade_s = {});
 
   /// Sets levels and goals by hand. They stay until released, through corrections and later plans, within limits. The
   /// rest is solved around them at once, as far as the model knows. Blackout, failures and the safe look override them

@@ -9,6 +9,7 @@
 #include "tools/http/json_body.h"
 #include "tools/http/request_reader.h"
 #include "tools/luxrigd/api/access.h"
+#include "tools/luxrigd/api/preview_json.h"
 #include "tools/luxrigd/api/route_table.h"
 
 namespace {
@@ -41,9 +42,16 @@ luxrig::HttpHandlers checking_handlers() {
     LUXRIG_CHECK(seconds > 0 && seconds <= 60, "an aim for {} s", seconds);
     return luxrig::Result<void>();
   };
+  handlers.preview = [](const luxrig::PreviewQuestion& question, const std::string&) {
+    LUXRIG_CHECK(!question.changes.empty() && question.changes.size() <= luxrig::kMaxChanges, "{} changes",
+                 question.changes.size());
+    return luxrig::Result<std::string>("{}");
+  };
   handlers.park = [](const std::vector<std::string>&) { return luxrig::Result<void>(); };
   handlers.hand_back = [] {};
-  handlers.apply = [](const std::string& plan) -> luxrig::Checked<std::string> {
+  handlers.plan = [] { return std::string("{}"); };
+  handlers.apply = [](const std::string& plan, std::optional<double> fade_s) -> luxrig::Checked<std::string> {
+    LUXRIG_CHECK(!fade_s || (*fade_s >= 0.1 && *fade_s <= 600), "fades in {} s", *fade_s);
     if (const auto read = luxrig::plan_from_json(plan, "plan"); !read) return tl::unexpected(read.error());
     return std::string("applied");
   };

@@ -77,7 +77,7 @@ class SteppedSubject final : public Subject {
     jumps_ = true;
     return handlers_.blackout(on).has_value();
   }
-  bool apply(std::size_t plan) override { return handlers_.apply(plans_[plan]).has_value(); }
+  bool apply(std::size_t plan) override { return handlers_.apply(plans_[plan], {}).has_value(); }
   bool hold(std::size_t lamp, double level) override {
     return handlers_.level({lamp_name(kOverWorks[lamp])}, level, {}).has_value();
   }
@@ -85,9 +85,9 @@ class SteppedSubject final : public Subject {
   bool nonsense(std::size_t kind) override {
     switch (kind) {
       case 0:
-        return handlers_.apply("{\"tasks\": [[[").has_value();
+        return handlers_.apply("{\"tasks\": [[[", {}).has_value();
       case 1:
-        return handlers_.apply(plans_[0].substr(0, plans_[0].size() / 2)).has_value();
+        return handlers_.apply(plans_[0].substr(0, plans_[0].size() / 2), {}).has_value();
       case 2:
         return handlers_.level({"nobody"}, 0.5, {}).has_value();
       default:

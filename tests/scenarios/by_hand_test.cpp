@@ -72,6 +72,23 @@ TEST(ByHandInTheHall, AGoalSetByHandIsMetAndItsReleaseRestoresTheOriginal) {
   }
 }
 
+TEST(ByHandInTheHall, APlanFadesAsLongAsItsSenderWants) {
+  ClosedLoop loop(make_hall(3), seeded(3));
+  loop.apply();
+  ASSERT_TRUE(loop.run_until(Phase::holding, 30)) << loop.describe();
+  Look look;
+  for (const Fixture& fixture : loop.hall.rig.fixtures) look.joints.push_back(fixture.joints);
+  for (const Point& point : loop.hall.rig.points) look.goal_lx.push_back(point.goal_lx);
+  look.levels = loop.hall.plan;
+  for (double& level : look.levels) level *= 0.5;
+  const double seconds = loop.hall.rig.control.fade_s + 4;
+  loop.show.apply(loop.now, look, loop.hall.model, seconds);
+  loop.run(seconds - 0.5);
+  EXPECT_EQ(loop.status().phase, Phase::fading) << loop.describe();
+  loop.run(1);
+  EXPECT_NE(loop.status().phase, Phase::fading) << loop.describe();
+}
+
 // A rig file read again: the light goes on, limits hold, and the new goals apply.
 TEST(ByHandInTheHall, AReplacedRigFadesToItsNewGoalsWithinItsNewLimits) {
   for (const bool same_light : {true, false}) {

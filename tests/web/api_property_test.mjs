@@ -189,6 +189,7 @@ try {
     'POST /api/blackout': [{ on: true }, { on: false }],
     'POST /api/identify': [{ fixture: fixtures[0], seconds: 0.1 }, { fixture: fixtures[0] }],
     'POST /api/aim': [{ fixture: 'head-1', pan_deg: 10, tilt_deg: 40, level: 0.5, for_s: 0.1 }],
+    'POST /api/preview': [{ fixtures: [{ fixture: 'spot*', level: 0.5 }, { fixture: 'head-1', aim: [1, 2, 0] }], reflections: true, client: 'a-1' }, { fixtures: [{ fixture: 'head-1', pan_deg: 10, tilt_deg: 40, level: 1 }] }],
     'POST /api/park': [{ fixtures: ['head-1'] }, {}],
     'POST /api/apply': [JSON.parse(readFileSync(plan, 'utf8'))],
     'POST /api/level': [{ fixtures: ['spot*'], level: 0.5, for_s: 1, fade_s: 0.1 }, { levels: { 'spot-1': 0.5, 'head-1': 1 }, for_s: 1, fade_s: 0.1, measuring: false }],

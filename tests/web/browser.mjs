@@ -29,7 +29,7 @@ export async function openPage(browser, url, options = {}) {
   });
   page.on('console', (message) => {
     // A lost server and a refusal are part of the test; a broken content policy or script is not.
-    if (message.type() === 'error' && !/net::ERR|status of (503|400|401|409|412)/.test(message.text()))
+    if (message.type() === 'error' && !/net::ERR|status of (503|400|401|404|409|412)/.test(message.text()))
       misdeeds.push(`console: ${message.text()}`);
   });
   page.on('request', (request) => {

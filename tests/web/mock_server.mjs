@@ -7,6 +7,8 @@ import path from 'node:path';
 import { fileURLToPath, pathToFileURL } from 'node:url';
 import { FIXTURES, METERED, POINTS, room, roomPng } from './mock_rig.mjs';
 import { etagOf, sceneGlb } from './mock_scene.mjs';
+import { Changes, rigOf } from './mock_changes.mjs';
+import { MockPlans } from './mock_plans.mjs';
 
 const TYPES = { '.html': 'text/html; charset=utf-8', '.js': 'text/javascript', '.css': 'text/css', '.svg': 'image/svg+xml' };
 const wobble = (seed, t) => Math.sin(seed * 12.9898 + t * 1.7) * 0.6 + Math.sin(seed * 78.233 + t * 0.31) * 0.4;
@@ -35,16 +37,19 @@ export class MockDaemon {
   faulted = new Set(); // names of devices
   dark = {}; // by name of a fixture: further fields of its entry, such as parked and waits_for
   posts = []; // bodies of accepted posts
-  silent = false; // the line stays open without data
-  unknown = false; // the browser has no access, and gets no events
   who = { name: 'this computer\'s user', role: 'configure' }; // while it is known
   accounts = {}; // by name: { password, role }; none: nobody can log in
   changes = []; // GET /api/changes
+  silent = false; // questions for the status stay open without an answer
+  unknown = false; // the browser has no access, and gets no status
+  plans = new MockPlans(this);
+  statusBytes = 0; // of all answers to what has changed
   refuse = false; // posts are answered with 503
   scripted = false;
   scene = sceneGlb(); // GET /api/scene; undefined: the rig has none
   sceneAnswers = []; // codes of the answers to it
-  #streams = new Set();
+  #waiting = new Set(); // answers while silent
+  #changes = new Changes();
   #picture = roomPng();
   #started = Date.now();
 
@@ -62,22 +67,14 @@ export class MockDaemon {
       this.server.once('error', reject);
       this.server.listen(port, '127.0.0.1', resolve);
     });
-    this.timer = setInterval(() => this.#tell(), 200);
     return this.server.address().port;
   }
 
   async close() {
-    clearInterval(this.timer);
-    for (const stream of this.#streams) stream.destroy();
-    this.#streams.clear();
+    for (const response of this.#waiting) response.destroy();
+    this.#waiting.clear();
     this.server.closeAllConnections?.();
     await new Promise((resolve) => this.server.close(resolve));
-  }
-
-  #tell() {
-    if (this.silent) return;
-    const text = `event: status\ndata: ${JSON.stringify(this.status())}\n\n`;
-    for (const stream of this.#streams) stream.write(text);
   }
 
   #scene(t) {
@@ -137,7 +134,7 @@ export class MockDaemon {
       rig: this.name, version: '0.1.0', phase: scene.phase, detail: `${good} of ${METERED.length} meters within 2 %`,
       time_s: round(t, 2), simulated: true, blackout: this.blackout, round: scene.round ?? 0, rounds: 3,
       converged: scene.phase === 'holding' && good === METERED.length,
-      fixtures: FIXTURES.map((f) => ({ name: f.name, bus: f.bus, address: f.address, position: f.position, aim: f.aim, pan_deg: 12.5, tilt_deg: 41,
+      fixtures: FIXTURES.map((f) => ({ name: f.name, luminaire: 'spot', max_level: 1, bus: f.bus, address: f.address, position: f.position, aim: f.aim, pan_deg: 12.5, tilt_deg: 41,
         level: round(f.level * shown, 4), drive: round(Math.sqrt(f.level * shown), 4),
         target_level: this.blackout ? 0 : f.level, gain: f.gain, gain_standard_error: 0.012,
         ...(this.dark[f.name] ? { moves: true, level: 0, drive: 0, target_level: 0, ...this.dark[f.name] } : {}) })),
@@ -148,6 +145,12 @@ export class MockDaemon {
       ...(this.question ? { question: { ...this.question, remaining_s: 45 } } : {}),
       output: { rate_hz: 44, frames: Math.floor(t * 44), p50_us: 38, p99_us: 91, max_us: 212, realtime: true },
     };
+  }
+
+  #since(version) {
+    const answer = this.#changes.since(version, this.status());
+    this.statusBytes += JSON.stringify(answer).length;
+    return answer;
   }
 
   /** A client puts a question, keeps it there, and takes it back. */
@@ -184,6 +187,7 @@ export class MockDaemon {
       return json(200, { released: true, text: '1 released' });
     }
     const kind = route === '/api/level' ? 'level' : 'goal';
+    if (asked.levels) return json(200, { held: true, text: '' });
     const name = (asked.fixtures ?? asked.points)[0];
     const known = kind === 'level' ? FIXTURES : POINTS;
     if (!known.some((k) => k.name === name)) return json(400, { error: `the rig has no ${name}` });
@@ -204,10 +208,11 @@ export class MockDaemon {
   async #answer(request, response) {
     const url = new URL(request.url, 'http://mock');
     const json = (code, value) => response.writeHead(code, { 'Content-Type': 'application/json' }).end(JSON.stringify(value));
+    if (url.pathname.startsWith('/api/') && this.plans.answers(request.method, url.pathname)) return this.plans.answer(request, url, json);
     if (request.method === 'POST') {
       let body = '';
       for await (const part of request) body += part;
-      if (!['/api/blackout', '/api/level', '/api/goal', '/api/release', '/api/question', '/api/answer', '/api/login', '/api/logout'].includes(url.pathname)) return json(404, {});
+      if (!['/api/blackout', '/api/level', '/api/goal', '/api/release', '/api/question', '/api/answer', '/api/aim', '/api/identify', '/api/park', '/api/login', '/api/logout'].includes(url.pathname)) return json(404, {});
       if (request.headers['content-type'] !== 'application/json') return json(415, {});
       if (url.pathname.startsWith('/api/log')) return this.#logInOrOut(url.pathname, JSON.parse(body), json);
       if (this.refuse) return json(503, {});
@@ -215,6 +220,7 @@ export class MockDaemon {
       const { body: asked } = this.posts.at(-1);
       if (url.pathname === '/api/question') return this.#ask(asked, json);
       if (url.pathname === '/api/answer') return this.#answerQuestion(asked, json);
+      if (['/api/aim', '/api/identify', '/api/park'].includes(url.pathname)) return json(200, {});
       if (url.pathname !== '/api/blackout') return this.#byHand(url.pathname, asked, json);
       this.blackout = asked.on === true;
       return json(200, { on: this.blackout });
@@ -225,19 +231,21 @@ export class MockDaemon {
       case '/api/changes':
         return json(200, this.changes);
       case '/api/status':
-        return json(200, this.status());
+        if (this.unknown) return json(401, { error: 'who asks?' });
+        if (!url.searchParams.has('since')) return json(200, this.status());
+        if (this.silent) {
+          this.#waiting.add(response);
+          return request.on('close', () => this.#waiting.delete(response));
+        }
+        return json(200, this.#since(url.searchParams.get('since')));
+      case '/api/rig':
+        return json(200, rigOf(this.status()));
       case '/api/room':
         return json(200, room(this.name));
       case '/api/room.png':
         return response.writeHead(200, { 'Content-Type': 'image/png' }).end(this.#picture);
       case '/api/scene':
         return this.#sceneAnswer(request, response, json);
-      case '/api/events':
-        if (this.unknown) return json(401, { error: 'who asks?' });
-        response.writeHead(200, { 'Content-Type': 'text/event-stream', 'Cache-Control': 'no-store' });
-        this.#streams.add(response);
-        request.on('close', () => this.#streams.delete(response));
-        return undefined;
     }
     const file = path.join(this.dist, path.normalize(url.pathname === '/' ? '/index.html' : url.pathname));
     try {

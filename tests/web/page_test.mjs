@@ -12,6 +12,7 @@ import { unreadableTexts } from './contrast.mjs';
 import { MockDaemon } from './mock_server.mjs';
 import { allChecks, fitsItsWidth, showsTheRig } from './page_checks.mjs';
 import { questionChecks } from './question_checks.mjs';
+import { solveChecks } from './solve_checks.mjs';
 
 const option = (name) => {
   const at = process.argv.indexOf(name);
@@ -51,6 +52,7 @@ async function againstMock(browser, dist, out) {
   const port = await daemon.listen();
   const url = `http://127.0.0.1:${port}/`;
   const shot = (page, name, options = {}) => page.screenshot({ path: path.join(out, `${name}.png`), ...options });
+  shot.path = (name) => path.join(out, `${name}.png`);
   mkdirSync(out, { recursive: true });
 
   const { page, misdeeds, close } = await openPage(browser, url);
@@ -244,6 +246,7 @@ async function againstMock(browser, dist, out) {
       assert.deepEqual(view.misdeeds, []);
       await view.close();
     });
+  await solveChecks(browser, daemon, url, check, shot);
   await questionChecks(browser, daemon, url, check, shot);
   await daemon.close();
 }

@@ -5,6 +5,7 @@ import { mkdirSync } from 'node:fs';
 import path from 'node:path';
 import { startBrowser } from './browser.mjs';
 import { MockDaemon } from './mock_server.mjs';
+import { handChecks } from './hand_checks.mjs';
 import { roomChecks } from './room_checks.mjs';
 
 const option = (name) => process.argv[process.argv.indexOf(name) + 1];
@@ -26,7 +27,10 @@ const daemon = new MockDaemon(dist);
 try {
   mkdirSync(out, { recursive: true });
   const url = `http://127.0.0.1:${await daemon.listen()}/`;
-  await roomChecks(browser, daemon, url, check, (page, name) => page.screenshot({ path: path.join(out, `${name}.png`) }));
+  const shot = (page, name) => page.screenshot({ path: shot.path(name) });
+  shot.path = (name) => path.join(out, `${name}.png`);
+  await handChecks(browser, daemon, url, check, shot);
+  await roomChecks(browser, daemon, url, check, shot);
 } catch (error) {
   console.error(`FAILED: ${error.message}`);
   process.exitCode = 1;

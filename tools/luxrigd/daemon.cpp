@@ -10,6 +10,7 @@
 #include "core/tasks/rig_version.h"
 #include "drivers/registry.h"
 #include "tools/command_line/installed.h"
+#include "tools/luxrigd/api/preview_json.h"
 #include "tools/luxrigd/api/scene_file.h"
 #include "tools/luxrigd/api/status_json.h"
 #include "tools/luxrigd/painted_goals.h"
@@ -369,9 +370,19 @@ HttpHandlers Daemon::handlers() {
   handlers.aim = [this](const std::string& name, const Joints& joints, double level, double seconds) {
     return aim(name, joints, level, seconds);
   };
+  handlers.preview = [this](const PreviewQuestion& question, const std::string& client) -> Result<std::string> {
+    const auto last = published();
+    if (!last) return tl::unexpected(Fault{Cause::timeout, {}, "nothing is lit yet: ask again", {}});
+    const auto light = preview_.light(last->session, last->show, question.changes, question.reflections, client);
+    if (!light) return tl::unexpected(light.error());
+    return preview_text(last->session->rig, *light);
+  };
   handlers.park = [this](const std::vector<std::string>& names) { return park(names); };
   handlers.hand_back = [this] { on_control_thread([this](Time at) { controller_.hand_back(at); }); };
-  handlers.apply = [this](const std::string& plan_json) { return apply_json(plan_json); };
+  handlers.apply = [this](const std::string& plan_json, std::optional<double> fade_s) {
+    return apply_json(plan_json, fade_s);
+  };
+  handlers.plan = [this] { return journal_.state().plan_json; };
   handlers.level = [this](const std::vector<std::string>& names, double level, const ByHandTimes& times) {
     return hold(ByHand::What::level, names, level, times);
   };

@@ -22,6 +22,7 @@
 #include "tools/luxrigd/claims.h"
 #include "tools/luxrigd/guardian/guardian.h"
 #include "tools/luxrigd/hand_question.h"
+#include "tools/luxrigd/light_preview.h"
 #include "tools/luxrigd/rig_file_watch.h"
 #include "tools/luxrigd/state/change_log.h"
 #include "tools/luxrigd/state/journal.h"
@@ -164,10 +165,10 @@ class Daemon {
   /// Treatment of a plan that cannot be saved. is_saved: it is on disk already.
   enum class Unsaved { is_refused, goes_on, is_saved };
   /// plan_json: text of the same plan, for the journal.
-  [[nodiscard]] Checked<std::string> apply(const Plan& plan, const std::string& plan_json, bool of_rig,
-                                           Unsaved unsaved);
+  [[nodiscard]] Checked<std::string> apply(const Plan& plan, const std::string& plan_json, bool of_rig, Unsaved unsaved,
+                                           std::optional<double> fade_s = {});
   /// A plan as a client sends it.
-  [[nodiscard]] Checked<std::string> apply_json(const std::string& plan_json);
+  [[nodiscard]] Checked<std::string> apply_json(const std::string& plan_json, std::optional<double> fade_s);
 
   DaemonOptions options_;
   ShowController controller_;
@@ -175,6 +176,7 @@ class Daemon {
   Claims folder_claim_, output_claims_;
   BlackoutSwitch blackout_;
   QuestionBoard questions_;
+  LightPreview preview_;
   std::optional<LastLookMemory> guarded_;  ///< shared with the guardian
   std::counting_semaphore<> contact_pressed_{0};
   std::vector<std::optional<Time>> contact_unknown_since_, contact_pressed_since_;  ///< by bus

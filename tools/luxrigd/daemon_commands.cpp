@@ -129,13 +129,14 @@ Checked<void> Daemon::apply(const Plan& plan, bool of_rig) {
   return {};
 }
 
-Checked<std::string> Daemon::apply_json(const std::string& plan_json) {
+Checked<std::string> Daemon::apply_json(const std::string& plan_json, std::optional<double> fade_s) {
   const auto plan = plan_from_json(plan_json, "plan");
   if (!plan) return tl::unexpected(plan.error());
-  return apply(*plan, plan_json, false, Unsaved::is_refused);
+  return apply(*plan, plan_json, false, Unsaved::is_refused, fade_s);
 }
 
-Checked<std::string> Daemon::apply(const Plan& plan, const std::string& plan_json, bool of_rig, Unsaved unsaved) {
+Checked<std::string> Daemon::apply(const Plan& plan, const std::string& plan_json, bool of_rig, Unsaved unsaved,
+                                   std::optional<double> fade_s) {
   // Light is traced before the lock, so that other commands need not wait. If a reload came in between, once more.
   std::shared_ptr<const Session> session = this->session();
   auto look = look_for(plan, session->rig, "plan");
@@ -177,8 +178,8 @@ Checked<std::string> Daemon::apply(const Plan& plan, const std::string& plan_jso
     std::string waits;  ///< reason; empty if it does not wait
   };
   const auto applied = ask_control_thread<Applied>(
-      [this, made_for = plan.made_for, look = std::move(*look), model = std::move(*model)](Time at) -> Applied {
-        controller_.apply(at, look, model);
+      [this, made_for = plan.made_for, look = std::move(*look), model = std::move(*model), fade_s](Time at) -> Applied {
+        controller_.apply(at, look, model, fade_s);
         {
           const std::lock_guard lock(mutex_);
           plan_made_for_ = made_for;

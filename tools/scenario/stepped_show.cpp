@@ -136,7 +136,7 @@ class SteppedVenue final : public Venue {
   Result<void> answer_to(const Event& event, const std::string& plan_json) {
     switch (event.what) {
       case What::apply:
-        return told(handlers_.apply(plan_json));
+        return told(handlers_.apply(plan_json, {}));
       case What::blackout:
       case What::lift_blackout:
         return told(handlers_.blackout(event.what == What::blackout));

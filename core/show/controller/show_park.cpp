@@ -36,7 +36,7 @@ Result<void> ShowController::State::park(Time now, std::span<const std::size_t> 
   if (std::find(chosen.begin(), chosen.end(), 1) == chosen.end())
     return refusal("no head has a place to rest: give one park_pan_deg and park_tilt_deg");
   // A look that still waits for heads to go dark is taken with this one.
-  Awaited next = awaited ? std::move(*awaited) : Awaited{planned, {}};
+  Awaited next = awaited ? std::move(*awaited) : Awaited{planned, {}, {}};
   Look& look = next.look;
   if (!awaited) look.joints = program.joints;
   std::vector<double> levels = cue ? *cue : std::vector<double>(rig.fixtures.size(), 0.0);

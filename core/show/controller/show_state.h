@@ -75,6 +75,7 @@ struct ShowController::State {
   struct Awaited {
     Look look;
     LightModel model;  ///< with its joints
+    std::optional<double> fade_s;  ///< none = the rig's
   };
   std::optional<Awaited> awaited;  ///< taken as soon as the heads that it turns are dark
   Time arrive{};                   ///< heads have arrived by then; no fade starts before

@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
 #include <limits>
 
 #include "tools/http/json_body.h"
 #include "tools/luxrigd/api/command_limits.h"
+#include "tools/luxrigd/api/preview_json.h"
 #include "tools/luxrigd/api/question_json.h"
 
 namespace luxrig {
@@ -136,7 +138,23 @@ HttpResponse hand_back(Handlers handlers, Request) {
 }
 
 HttpResponse apply(Handlers handlers, Request request) {
-  return checked_answer(handlers.apply(request.body), "applied");
+  std::optional<double> fade_s;
+  if (const auto text = request.parameter("fade_s")) {
+    double value = 0;
+    const auto [end, error] = std::from_chars(text->data(), text->data() + text->size(), value);
+    if (error != std::errc() || end != text->data() + text->size() ||
+        !(value >= kShortestFade_s && value <= kLongestFade_s))
+      return http_refusal(400,
+                          fmt::format("fade_s is a number of seconds, from {} to {}", kShortestFade_s, kLongestFade_s));
+    fade_s = value;
+  }
+  return checked_answer(handlers.apply(request.body, fade_s), "applied");
+}
+
+HttpResponse plan(Handlers handlers, Request) {
+  std::string plan = handlers.plan();
+  if (plan.empty()) return http_refusal(404, "no plan is in force yet");
+  return json_answer(std::move(plan));
 }
 
 HttpResponse goal(Handlers handlers, Request request) { return by_hand(request, "points", "goal_lux", handlers.goal); }
@@ -199,6 +217,15 @@ HttpResponse aim(Handlers handlers, Request request) {
       !done)
     return http_refusal(400, done.error().detail);
   return dumped_answer({{"for_s", seconds}});
+}
+
+HttpResponse preview(Handlers handlers, Request request) {
+  const auto question = preview_question_of(request.body);
+  if (!question) return http_refusal(400, question.error().detail);
+  auto light = handlers.preview(*question, request.credential + "/" + question->client);
+  if (light) return json_answer(std::move(*light));
+  const Cause cause = light.error().cause;
+  return http_refusal(cause == Cause::cancelled ? 409 : cause == Cause::timeout ? 503 : 400, light.error().detail);
 }
 
 HttpResponse park(Handlers handlers, Request request) {

@@ -20,6 +20,7 @@
 namespace luxrig {
 
 class PaintedGoals;
+struct PreviewQuestion;
 
 /// The daemon's handlers. They are called from the server's threads; each must be safe to call from any thread.
 struct HttpHandlers {
@@ -40,11 +41,14 @@ struct HttpHandlers {
   std::function<Result<void>(const std::string& fixture, double seconds)> identify;
   /// Turns a head by hand, lit to this level, for this many seconds.
   std::function<Result<void>(const std::string& fixture, const Joints& joints, double level, double seconds)> aim;
+  /// What the light would be, as JSON. client: of whom the newest question wins. LightPreview::light() has the causes.
+  std::function<Result<std::string>(const PreviewQuestion& question, const std::string& client)> preview;
   /// Heads by name; empty list = all.
   std::function<Result<void>(const std::vector<std::string>& fixtures)> park;
   std::function<void()> hand_back;  ///< gives the light to desks that wait for it
-  /// Returns notes for a person, in lines; empty if there are none.
-  std::function<Checked<std::string>(const std::string& plan_json)> apply;
+  /// Returns notes for a person, in lines; empty if there are none. fade_s: none = as the rig's looks.
+  std::function<Checked<std::string>(const std::string& plan_json, std::optional<double> fade_s)> apply;
+  std::function<std::string()> plan;  ///< JSON, in force; empty if there is none
   /// Set by hand. Names may contain * and ?. Returns text for a person.
   std::function<Result<std::string>(const std::vector<std::string>& fixtures, double level, const ByHandTimes& times)>
       level;
@@ -95,9 +99,11 @@ using Request = const HttpRequest&;
 [[nodiscard]] HttpResponse blackout(Handlers handlers, Request request);
 [[nodiscard]] HttpResponse identify(Handlers handlers, Request request);
 [[nodiscard]] HttpResponse aim(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse preview(Handlers handlers, Request request);
 [[nodiscard]] HttpResponse park(Handlers handlers, Request request);
 [[nodiscard]] HttpResponse hand_back(Handlers handlers, Request request);
 [[nodiscard]] HttpResponse apply(Handlers handlers, Request request);
+[[nodiscard]] HttpResponse plan(Handlers handlers, Request request);
 [[nodiscard]] HttpResponse level(Handlers handlers, Request request);
 [[nodiscard]] HttpResponse goal(Handlers handlers, Request request);
 [[nodiscard]] HttpResponse release(Handlers handlers, Request request);

@@ -5,6 +5,7 @@
 #include "core/goals/stroke.h"
 #include "tools/luxrig/calibrate/hand_answer.h"
 #include "tools/luxrigd/api/command_limits.h"
+#include "tools/luxrigd/api/preview_json.h"
 #include "tools/luxrigd/api/recorded.h"
 
 namespace luxrig {
@@ -13,7 +14,6 @@ namespace {
 using namespace schema;
 
 constexpr const char* kAccountName = "^[0-9A-Za-z._@-]{1,64}$";
-constexpr const char* kQuestionId = "^[0-9A-Za-z_-]{1,40}$";
 
 // Formats say of which kind a name is; the daemon refuses one that the rig does not have.
 Schema name_of_a(const char* kind) { return {{"type", "string"}, {"format", kind}}; }
@@ -288,6 +288,16 @@ std::vector<ApiRoute> made_table() {
        {ok(answer({{"for_s", number()}})), refused()},
        answer_to::aim},
       {"POST",
+       "/api/preview",
+       look,
+       "what the light would be with other levels or aims; nothing moves",
+       preview_body(),
+       {ok(preview_answer(), "the predicted light"),
+        refused(),
+        {409, "a newer question of this client has taken its place", ref("Refusal")},
+        {503, "another client's is being computed, or nothing is lit yet: ask again", ref("Refusal")}},
+       answer_to::preview},
+      {"POST",
        "/api/park",
        operate,
        "sends heads, or all that can, to their place of rest, dark",
@@ -301,16 +311,24 @@ std::vector<ApiRoute> made_table() {
        none,
        {ok(answer({{"handed_back", yes()}}))},
        answer_to::hand_back},
-      {"POST",
-       "/api/apply",
-       operate,
-       "puts a plan in force",
-       ref("Plan"),
-       {ok(done("applied"), "it is in force, and on disk"),
-        refused(),
-        {503, "others are sending files just now: try again", ref("Refusal")}},
-       answer_to::apply,
-       kMaxPlanBytes},
+      with({{"fade_s", "how long the light takes to get there: from 0.1 to 600; absent: as the rig's looks"}},
+           {"POST",
+            "/api/apply",
+            operate,
+            "puts a plan in force",
+            ref("Plan"),
+            {ok(done("applied"), "it is in force, and on disk"),
+             refused(),
+             {503, "others are sending files just now: try again", ref("Refusal")}},
+            answer_to::apply,
+            kMaxPlanBytes}),
+      {"GET",
+       "/api/plan",
+       look,
+       "the plan in force, as it was applied or solved",
+       none,
+       {ok(ref("Plan"), "the plan"), {404, "no plan is in force yet", ref("Refusal")}},
+       answer_to::plan},
       {"POST",
        "/api/jobs",
        operate,

@@ -17,6 +17,14 @@ export interface Fixture {
   drive?: number; // 0…1 on the wire
   gain?: number; // estimated true output over rated
   gain_standard_error?: number;
+  pan_deg?: number;
+  tilt_deg?: number;
+  max_level?: number;            // 0…1
+  mount_axes?: readonly Vec3[];  // x, y and z of its mount in the world
+  moves?: true;                  // a head
+  parks?: true;                  // it has a place to rest
+  identified?: true;             // it shows which one it is
+  aimed_by_hand?: true;
   parked?: true; // it rests, dark
   kept_dark?: true; // its beam could meet a keep-out zone
   waits_for?: string; // parked or kept dark: what lights it again
@@ -155,7 +163,7 @@ function vector(value: unknown): Vec3 | undefined {
 export const isVec3 = (value: unknown): value is Vec3 => vector(value) !== undefined;
 
 /** Copies the named numbers that are there; an absent one stays absent. */
-function numbers<K extends string>(from: Fields, ...keys: K[]): Partial<Record<K, number>> {
+export function numbers<K extends string>(from: Fields, ...keys: K[]): Partial<Record<K, number>> {
   const found: Partial<Record<K, number>> = {};
   for (const key of keys) {
     const value = number(from[key]);
@@ -173,8 +181,21 @@ function vectors<K extends string>(from: Fields, ...keys: K[]): Partial<Record<K
   return found;
 }
 
+function axes(value: unknown): {mount_axes?: readonly Vec3[]} {
+  if (!Array.isArray(value) || value.length !== 3) return {};
+  const all = value.map(vector);
+  return all.every((one) => one !== undefined) ? {mount_axes: all as Vec3[]} : {};
+}
+
+/** Copies the named keys that are true. */
+function flags<K extends string>(from: Fields, ...keys: K[]): Partial<Record<K, true>> {
+  return Object.fromEntries(keys.filter((key) => from[key] === true).map((key) => [key, true])) as
+      Partial<Record<K, true>>;
+}
+
 /** One of these words; any other is none. */
-function oneOf<K extends string, W extends string>(from: Fields, key: K, words: readonly W[]): Partial<Record<K, W>> {
+export function oneOf<K extends string, W extends string>(
+    from: Fields, key: K, words: readonly W[]): Partial<Record<K, W>> {
   const found = words.find((word) => word === from[key]);
   return found === undefined ? {} : ({ [key]: found } as Record<K, W>);
 }
@@ -210,18 +231,21 @@ export function readStatus(value: unknown): Status | undefined {
     blackout: s['blackout'] === true,
     converged: s['converged'] === true,
     ...numbers(s, 'time_s', 'round', 'rounds'),
-    fixtures:
-        listOf(s['fixtures']).map((f) => ({
-                                    name: text(f['name']),
-                                    bus: text(f['bus']),
-                                    address: text(f['address']),
-                                    ...vectors(f, 'position', 'aim'),
-                                    ...numbers(f, 'level', 'target_level', 'drive', 'gain', 'gain_standard_error'),
-                                    level_known: f['level_known'] !== false,
-                                    ...(f['parked'] === true ? {parked: true as const} : {}),
-                                    ...(f['kept_dark'] === true ? {kept_dark: true as const} : {}),
-                                    ...(text(f['waits_for']) ? {waits_for: text(f['waits_for'])} : {}),
-                                  })),
+    fixtures: listOf(s['fixtures']).map((f) => ({
+                                          name: text(f['name']),
+                                          bus: text(f['bus']),
+                                          address: text(f['address']),
+                                          ...vectors(f, 'position', 'aim'),
+                                          ...numbers(
+                                              f, 'level', 'target_level', 'drive', 'gain', 'gain_standard_error',
+                                              'pan_deg', 'tilt_deg', 'max_level'),
+                                          ...axes(f['mount_axes']),
+                                          ...flags(f, 'moves', 'parks', 'identified', 'aimed_by_hand'),
+                                          level_known: f['level_known'] !== false,
+                                          ...(f['parked'] === true ? {parked: true as const} : {}),
+                                          ...(f['kept_dark'] === true ? {kept_dark: true as const} : {}),
+                                          ...(text(f['waits_for']) ? {waits_for: text(f['waits_for'])} : {}),
+                                        })),
     points: listOf(s['points']).map((p) => ({
                                       name: text(p['name']),
                                       reason: text(p['reason']),
@@ -324,7 +348,7 @@ export interface Session {
 /** Nothing while the daemon does not answer. */
 export async function fetchSession(): Promise<Session|undefined> {
   try {
-    const answer = await fetch('/api/session', { cache: 'no-store' });
+    const answer = await fetch('/api/session', {cache: 'no-store', signal: AbortSignal.timeout(2000)});
     if (!answer.ok) return undefined;
     const said = fieldsOf(await answer.json());
     return {

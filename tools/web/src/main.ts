@@ -14,6 +14,7 @@ import { HeaderView } from './views/header';
 import {OutputView} from './views/output';
 import { PointsTable } from './views/points_table';
 import {QuestionView} from './views/question';
+import {SolveView} from './views/solve';
 import { themeButton } from './views/theme';
 import { TilesView } from './views/tiles';
 
@@ -24,6 +25,7 @@ const alarms = new AlarmsView();
 const question = new QuestionView();
 const tiles = new TilesView();
 const room = new RoomCard(selection);
+const solve = new SolveView();
 const points = new PointsTable(selection);
 const fixtures = new FixturesView(selection);
 const byHand = new ByHandView();
@@ -34,7 +36,7 @@ const output = new OutputView();
 const main = element(
     'main',
     {},
-    element('div', {class: 'column wide'}, room.root, points.root),
+    element('div', {class: 'column wide'}, room.root, solve.root, points.root),
     element(
         'div', {class: 'column'}, tiles.root, fixtures.root, byHand.root, meters.root, devices.root, access.log,
         output.root),
@@ -71,6 +73,7 @@ follow(
     question.show(status.question);
     tiles.show(status);
     room.show(status);
+    solve.show(status);
     points.show(status.points);
     fixtures.show(status.fixtures);
     byHand.show(status);

@@ -17,6 +17,7 @@
 #include "core/plan/plan.h"
 #include "tests/sanitized.h"
 #include "tools/luxrigd/api/accounts.h"
+#include "tools/luxrigd/api/preview_json.h"
 #include "tools/process/meeting_place.h"
 #include "tools/process/runtime_folder.h"
 
@@ -81,6 +82,14 @@ class HttpApiTest : public ::testing::Test {
       blackouts += on ? 1 : 100;
       return {};
     };
+    handlers.preview = [this](const PreviewQuestion& question, const std::string& client) -> Result<std::string> {
+      previews +=
+          fmt::format("{} {} {} ", question.changes.size(), question.reflections, client.substr(client.find('/')));
+      if (question.changes[0].fixture == "nobody") return refusal("there is no nobody");
+      if (question.client == "old") return tl::unexpected(Fault{Cause::cancelled, {}, "a newer one", {}});
+      if (question.client == "late") return tl::unexpected(Fault{Cause::timeout, {}, "ask again", {}});
+      return std::string("{}");
+    };
     handlers.park = [this](const std::vector<std::string>& fixtures) -> Result<void> {
       if (!fixtures.empty() && fixtures[0] == "nobody") return refusal("there is no nobody");
       parked += static_cast<int>(fixtures.size()) + 1;
@@ -121,8 +130,10 @@ class HttpApiTest : public ::testing::Test {
     handlers.reload = []() -> Checked<std::string> {
       return tl::unexpected(std::vector<Problem>{{"rig.toml", 7, 1, "[[bus]] \"dmx\" has changed", "restart"}});
     };
-    handlers.apply = [this](const std::string& plan) -> Checked<std::string> {
+    handlers.plan = [this] { return applied > 0 ? std::string("{\"luxrig_plan\":1}") : std::string(); };
+    handlers.apply = [this](const std::string& plan, std::optional<double> fade_s) -> Checked<std::string> {
       ++applied;
+      if (fade_s) held += fmt::format("applied in {} ", *fade_s);
       if (const auto read = plan_from_json(plan, "plan"); plan.size() > 100 && !read)
         return tl::unexpected(read.error());
       if (plan == "{}") return std::string("spot held by hand");
@@ -139,7 +150,7 @@ class HttpApiTest : public ::testing::Test {
   std::unique_ptr<HttpApi> api;
   int port = 0;
   std::atomic<int> blackouts{0}, applied{0}, parked{0};
-  std::string held;
+  std::string held, previews;
   QuestionBoard questions;
 };
 
@@ -292,6 +303,57 @@ TEST_F(HttpApiTest, ARefusedReloadNamesItsKeyAndAnApplyItsHeldFixtures) {
   const std::string applied_answer = ask(port, post("/api/apply", "{}", kJson));
   EXPECT_NE(applied_answer.find("\"applied\":true"), std::string::npos) << applied_answer;
   EXPECT_NE(applied_answer.find("spot held by hand"), std::string::npos) << applied_answer;
+}
+
+TEST_F(HttpApiTest, APreviewIsAskedForInOneOfThreeWays) {
+  const auto ask_for = [&](const std::string& body) { return ask(port, post("/api/preview", body, kJson)); };
+  for (
+      const char* good :
+      {R"({"fixtures":[{"fixture":"a","level":0.5}]})", R"({"fixtures":[{"fixture":"a","aim":[1,2,3]}],"client":"x"})",
+       R"({"fixtures":[{"fixture":"a","pan_deg":1,"tilt_deg":2,"level":1},{"fixture":"b","level":0}],"reflections":true})"})
+    EXPECT_NE(ask_for(good).find(" 200 "), std::string::npos) << good;
+  EXPECT_EQ(previews, "1 false / 1 false /x 2 true / ");
+  previews.clear();
+  std::string many;
+  for (int i = 0; i < 65; ++i) many += (i ? "," : "") + std::string(R"({"fixture":"a","level":0})");
+  for (const std::string bad : {"",
+                                "[]",
+                                "{}",
+                                R"({"fixtures":[]})",
+                                R"({"fixtures":{"fixture":"a","level":1}})",
+                                R"({"fixtures":[7]})",
+                                R"({"fixtures":[{"fixture":"a"}]})",
+                                R"({"fixtures":[{"level":1}]})",
+                                R"({"fixtures":[{"fixture":7,"level":1}]})",
+                                R"({"fixtures":[{"fixture":"a","level":1.01}]})",
+                                R"({"fixtures":[{"fixture":"a","level":-0.01}]})",
+                                R"({"fixtures":[{"fixture":"a","level":1e999}]})",
+                                R"({"fixtures":[{"fixture":"a","level":null,"aim":[1,2,3]}]})",
+                                R"({"fixtures":[{"fixture":"a","aim":[1,2]}]})",
+                                R"({"fixtures":[{"fixture":"a","aim":[1,2,1e6]}]})",
+                                R"({"fixtures":[{"fixture":"a","aim":[1,2,"3"]}]})",
+                                R"({"fixtures":[{"fixture":"a","pan_deg":1}]})",
+                                R"({"fixtures":[{"fixture":"a","aim":[1,2,3],"pan_deg":1,"tilt_deg":1}]})",
+                                R"({"fixtures":[{"fixture":"a","level":1}],"reflections":1})",
+                                R"({"fixtures":[{"fixture":"a","level":1}],"client":""})",
+                                R"({"fixtures":[{"fixture":"a","level":1}],"client":"a b"})",
+                                R"({"fixtures":[{"fixture":"a","level":1}],"client":1})"})
+    EXPECT_NE(ask_for(bad).find(" 400 "), std::string::npos) << bad;
+  EXPECT_NE(ask_for("{\"fixtures\":[" + many + "]}").find(" 400 "), std::string::npos);
+  EXPECT_EQ(previews, "");
+  EXPECT_NE(ask_for(R"({"fixtures":[{"fixture":"nobody","level":1}]})").find(" 400 "), std::string::npos);
+  EXPECT_NE(ask_for(R"({"fixtures":[{"fixture":"a","level":1}],"client":"old"})").find(" 409 "), std::string::npos);
+  EXPECT_NE(ask_for(R"({"fixtures":[{"fixture":"a","level":1}],"client":"late"})").find(" 503 "), std::string::npos);
+}
+
+TEST_F(HttpApiTest, APlanIsAppliedWithAFadeAndReadBack) {
+  EXPECT_NE(ask(port, get("/api/plan")).find(" 404 "), std::string::npos);
+  for (const std::string fade : {"", "0", "-1", "601", "nan", "inf", "1e999", "5s", "0x5", "%00"})
+    EXPECT_NE(ask(port, post("/api/apply?fade_s=" + fade, "{}", kJson)).find(" 400 "), std::string::npos) << fade;
+  EXPECT_EQ(applied, 0);
+  EXPECT_NE(ask(port, post("/api/apply?fade_s=2.5", "{}", kJson)).find("\"applied\":true"), std::string::npos);
+  EXPECT_EQ(held, "applied in 2.5 ");
+  EXPECT_NE(ask(port, get("/api/plan")).find("\"luxrig_plan\":1"), std::string::npos);
 }
 
 TEST_F(HttpApiTest, StreamsEventsAndStopsWhileAClientListens) {

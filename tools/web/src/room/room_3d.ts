@@ -11,6 +11,7 @@ import {type Chosen, type Selection} from '../selection';
 import {fixtureTip, placeTip, pointTip, surfaceTip} from '../views/tip';
 import {worksOf} from '../works';
 import {Fixtures3d} from './fixtures_3d';
+import {InHand} from './in_hand';
 import {type Label, Labels, fitting} from './labels';
 import {type Layer, type LuxScale, layerLux, scaleOf} from './layers';
 import type {MadeRoom} from './made_room';
@@ -96,6 +97,9 @@ export class Room3d {
   private paints = false;  // the pointer is down
   onScale: (layer: Layer, scale: LuxScale|undefined) => void = () => undefined;
   onLost: () => void = () => undefined;
+  onTake: (fixture: number) => void = () => undefined;  // a person pressed one
+  readonly hand: InHand;
+  private taken: number|undefined;
 
   constructor(private readonly selection: Selection) {
     this.root.append(this.canvas, this.labels.root, this.tip);
@@ -110,12 +114,19 @@ export class Room3d {
     this.points = new Points3d(colours);
     this.points.setPixels(dense);
     this.fixtures.setPixels(dense);
-    this.scene.add(this.sky, this.lamp, this.lamp.target, this.points.group, this.fixtures.group);
+    this.hand = new InHand({
+      root: this.root,
+      under: (ray) => this.surfaces?.under(ray),
+      rayThrough: (x, y) => this.rayThrough(x, y),
+      onScreen: (place) => this.onScreen(place),
+      change: () => this.change(true),
+    });
+    this.scene.add(this.sky, this.lamp, this.lamp.target, this.points.group, this.fixtures.group, this.hand.group);
     this.setTheme();
     watchTheme(() => this.setTheme());
     new ResizeObserver(() => this.resize()).observe(this.root);
-    new IntersectionObserver(([entry]) => {
-      this.shown = entry?.isIntersecting ?? true;
+    new IntersectionObserver((entries) => {
+      this.shown = entries[entries.length - 1]?.isIntersecting ?? true;  // a busy page hears of several at once
       this.schedule();
     }).observe(this.root);
     this.look.controls.addEventListener('update', () => this.change());
@@ -193,6 +204,12 @@ export class Room3d {
     this.onScale(this.layer, this.scale);
   }
 
+  /** Its spot can be dragged. */
+  take(fixture: number|undefined): void {
+    this.taken = fixture;
+    this.hand.take(fixture === undefined ? undefined : this.status?.fixtures[fixture]);
+  }
+
   setView(view: View): string {
     const side = view === 'side' ? this.look.turn() : '';
     if (view !== 'side') this.look.look(view);
@@ -260,6 +277,8 @@ export class Room3d {
     this.renderer.render(this.scene, look.camera);
     this.showTip(chosen);
     this.showLabels();
+    const spot = this.hand.seen;
+    setAttribute(this.root, 'data-spot', spot ? `${spot.x.toFixed(1)} ${spot.y.toFixed(1)}` : '');  // as above
   }
 
   /** [px] in the picture; undefined behind the viewer. */
@@ -343,6 +362,7 @@ export class Room3d {
     const chosen_point = chosen?.kind === 'point' ? chosen.index : undefined;
     this.points.show(status.points, this.origin, this.layer, this.scale, chosen_point);
     this.fixtures.show(status.fixtures, this.origin, marked);
+    this.hand.draw(this.taken === undefined ? undefined : status.fixtures[this.taken], this.origin);
 
     this.texts = [];
     const add = (place: Vector3|undefined, text: string, kind: Label['kind'], above = LABEL_ABOVE_PX): void => {
@@ -458,6 +478,15 @@ export class Room3d {
       if (this.paints) this.painter?.up(true);
       this.paints = false;
     });
+    // A press that turned the room took nothing.
+    let pressed: {x: number; y: number}|undefined;
+    this.canvas.addEventListener('pointerdown', (event) => (pressed = at(event)));
+    this.canvas.addEventListener('click', (event) => {
+      const now = at(event as PointerEvent);
+      if (!pressed || Math.hypot(now.x - pressed.x, now.y - pressed.y) > PRESS_MOVES_PX) return;
+      const chosen = this.selection.current;
+      if (chosen?.kind === 'fixture' && this.probe?.kind === 'fixture') this.onTake(chosen.index);
+    });
     this.canvas.addEventListener('contextmenu', (event) => event.preventDefault());
     this.canvas.addEventListener('pointerleave', (event) => {
       if (event.pointerType === 'mouse') forget();
@@ -474,7 +503,9 @@ export class Room3d {
         this.step('point', key === 'n' ? 1 : -1);
       else if (key === 'f')
         this.step('fixture', event.shiftKey ? -1 : 1);
-      else if (key === 'escape') {
+      else if (key === 'h') {
+        if (this.selection.current?.kind === 'fixture') this.onTake(this.selection.current.index);
+      } else if (key === 'escape') {
         this.byKeys = false;
         forget();
       } else if (!this.look.key(event.key, event.shiftKey))
@@ -519,6 +550,7 @@ export class Room3d {
     const {colours, lamp, ground, line} = readTheme();
     this.points.setColours(colours);
     this.fixtures.setColours(lamp);
+    this.hand.setColour(new Color().copy(lamp.text).convertSRGBToLinear());
     this.surfaces?.setTheme(new Color().copy(line).convertSRGBToLinear());
     this.renderer.setClearColor(new Color().copy(ground).convertSRGBToLinear());
     this.bright = lamp.dark ? 1 : 1.5;

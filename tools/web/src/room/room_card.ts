@@ -4,6 +4,8 @@
 import {type Room, type Status, fetchScene} from '../api';
 import {card, element, setAttribute, setText} from '../dom';
 import type {Selection} from '../selection';
+import type {Preview} from '../preview';
+import {HandView} from '../views/hand';
 import {PlanView} from '../views/plan';
 import {LAYERS, type Layer} from './layers';
 import {LuxLegend} from './lux_legend';
@@ -27,7 +29,10 @@ export class RoomCard {
   private readonly scale = new LuxLegend();
   private readonly ways = new Map<'plan'|'room', HTMLButtonElement>();
   private readonly views = new Map<View, HTMLButtonElement>();
+  private readonly hand = new HandView();
+  private readonly layers = element('select', {id: 'room-layer'});
   private layer: Layer = 'verdict';
+  private preview: Preview|undefined;
   private room: Room|undefined;
   private status: Status|undefined;
   private solid: Room3d|undefined;
@@ -46,9 +51,13 @@ export class RoomCard {
       ways.append(button);
     }
     this.tools.append(this.viewButtons(), this.layerChoice(), this.paintButton());
+    this.hand.root.hidden = true;
+    this.hand.onTake = (fixture) => this.solid?.take(fixture);
+    this.hand.onTurn = (angles) => this.solid?.hand.turn(angles);
+    this.hand.onLight = (light) => this.showPreview(light);
     this.root = card(
-        'plan', 'Room', ways, this.said, this.tools, this.paintPlace, this.stage, this.scale.root, this.plan.root,
-        this.plan.legend, this.keys);
+        'plan', 'Room', ways, this.said, this.tools, this.paintPlace, this.stage, this.scale.root, this.hand.root,
+        this.plan.root, this.plan.legend, this.keys);
     try {
       if (localStorage.getItem(REMEMBERED) === 'room') void this.choose('room');
     } catch {
@@ -64,10 +73,11 @@ export class RoomCard {
 
   show(status: Status): void {
     this.status = status;
+    this.hand.show(status);
     if (this.stage.hidden)
       this.plan.show(status);
     else
-      this.solid?.show(status, this.room);
+      this.solid?.show(this.seen(status), this.room);
   }
 
   private async choose(way: 'plan'|'room'): Promise<void> {
@@ -91,15 +101,41 @@ export class RoomCard {
   private mark(way: 'plan'|'room'): void {
     for (const [name, button] of this.ways) setAttribute(button, 'aria-pressed', String(name === way));
     const solid = way === 'room' && this.solid !== undefined;
-    for (const part of [this.stage, this.tools, this.keys]) part.hidden = !solid;
+    for (const part of [this.stage, this.tools, this.keys, this.hand.root]) part.hidden = !solid;
+    if (!solid) this.hand.take('');
     this.paintPlace.classList.toggle('off', !solid);
     this.plan.root.hidden = solid;
     this.scale.root.classList.toggle('off', !solid);
     if (!this.status) return;
     if (solid)
-      this.solid!.show(this.status, this.room, true);
+      this.solid!.show(this.seen(this.status), this.room, true);
     else
       this.plan.show(this.status);
+  }
+
+  /** The light that a change would give, in place of the prediction. */
+  private seen(status: Status): Status {
+    const {preview} = this;
+    if (!preview || preview.points.length !== status.points.length) return status;
+    return {
+      ...status,
+      points: status.points.map((point, i) => {
+        const {standard_error_lux: _, ...rest} = point;
+        const {lux, standard_error_lux} = preview.points[i]!;
+        if (lux === undefined) return point;
+        return {...rest, predicted_lux: lux, ...(standard_error_lux === undefined ? {} : {standard_error_lux})};
+      })
+    };
+  }
+
+  private showPreview(light: Preview|undefined): void {
+    const begins = light && !this.preview, ends = !light && this.preview;
+    this.preview = light;
+    if (begins || ends) {
+      this.layers.value = begins ? 'predicted' : this.layer;
+      this.solid?.setLayer(this.layers.value as Layer);
+    }
+    if (this.status && !this.stage.hidden) this.solid?.show(this.seen(this.status), this.room, true);
   }
 
   private say(words: string): void {
@@ -124,6 +160,8 @@ export class RoomCard {
       this.say(
           'The browser took the 3-D picture away. Reload the page to have it again; the plan shows the same numbers.');
     };
+    solid.onTake = (fixture) => this.hand.take(this.status?.fixtures[fixture]?.name ?? '');
+    solid.hand.onSpot = (place) => this.hand.spotAt(place);
     this.stage.replaceChildren(solid.root, solid.heard);
     this.solid = solid;
     solid.setLayer(this.layer);
@@ -235,6 +273,7 @@ function keysHelp(): HTMLElement {
     ['N and P', 'next point, point before'],
     ['F', 'next fixture, with Shift the one before'],
     ['0', 'whole room'],
+    ['H', 'takes the chosen fixture in hand; drag its spot to aim it'],
     ['Esc', 'nothing chosen'],
   ];
   return element(
