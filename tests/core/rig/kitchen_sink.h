@@ -55,9 +55,9 @@ name = "blue"; lumens; watts; xy
 [[luminaire]]
 name = "tunable"; model = "isotropic"
 [[luminaire.emitters]]
-name = "warm white"; lumens
+name = "warm white"; lumens; watts
 [[luminaire.emitters]]
-name = "cool white"; lumens
+name = "cool white"; lumens; watts
 [daemon]
 listen #> "::1"; rest
 [[bus]]

@@ -222,7 +222,7 @@ HttpResponse aim(Handlers handlers, Request request) {
 HttpResponse preview(Handlers handlers, Request request) {
   const auto question = preview_question_of(request.body);
   if (!question) return http_refusal(400, question.error().detail);
-  auto light = handlers.preview(*question, request.credential + "/" + question->client);
+  auto light = handlers.preview(*question, request.sender.credential + "/" + question->client);
   if (light) return json_answer(std::move(*light));
   const Cause cause = light.error().cause;
   return http_refusal(cause == Cause::cancelled ? 409 : cause == Cause::timeout ? 503 : 400, light.error().detail);

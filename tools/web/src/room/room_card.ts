@@ -30,7 +30,6 @@ export class RoomCard {
   private readonly ways = new Map<'plan'|'room', HTMLButtonElement>();
   private readonly views = new Map<View, HTMLButtonElement>();
   private readonly hand = new HandView();
-  private readonly layers = element('select', {id: 'room-layer'});
   private layer: Layer = 'verdict';
   private preview: Preview|undefined;
   private room: Room|undefined;
