@@ -17,7 +17,7 @@ using test::status_of;
 using test::TlsWire;
 using test::Wire;
 
-constexpr std::chrono::seconds kAnswered(60);
+constexpr std::chrono::seconds kHandshakeAnswered(60);
 
 std::shared_ptr<const TlsIdentity> identity(const test::MadeCertificate& made) {
   auto out = TlsIdentity::make(made.certificate, made.key, "page.pem", "page-key.pem");
@@ -97,7 +97,7 @@ TEST_F(TlsTest, KnowsTheNamesOfItsCertificateAndNoOthers) {
 TEST_F(TlsTest, TellsAPeerThatSpeaksPlainHttpToUseHttps) {
   Wire wire(port);
   ASSERT_TRUE(wire.send(get("rig.example")));
-  const std::string answer = wire.receive(kAnswered);
+  const std::string answer = wire.receive(kHandshakeAnswered);
   EXPECT_EQ(status_of(answer), 400) << answer;
   EXPECT_NE(answer.find("begin the address with https://"), std::string::npos) << answer;
   EXPECT_EQ(answer.find("127.0.0.1"), std::string::npos) << "it was handled";
@@ -111,15 +111,15 @@ TEST_F(TlsTest, GarbageAndSilenceEndTheirConnectionAlone) {
         std::string("\x16\x03\x01\x00\x04\xff\xff\xff\xff", 9)}) {
     Wire wire(port);
     ASSERT_TRUE(wire.send(garbage));
-    const std::string answer = wire.receive(kAnswered);
+    const std::string answer = wire.receive(kHandshakeAnswered);
     EXPECT_TRUE(wire.ended());
     EXPECT_EQ(answer.find("127.0.0.1"), std::string::npos);
   }
   EXPECT_EQ(status_of(TlsWire(port).ask(get("rig.example"))), 200) << "others are served meanwhile";
   // The deadline of a handshake.
-  (void)silent.receive(kAnswered);
+  (void)silent.receive(kHandshakeAnswered);
   EXPECT_TRUE(silent.ended());
-  (void)half.receive(kAnswered);
+  (void)half.receive(kHandshakeAnswered);
   EXPECT_TRUE(half.ended());
 }
 

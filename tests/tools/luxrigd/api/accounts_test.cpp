@@ -89,7 +89,7 @@ TEST(Accounts, ADayIsOneOfTheCalendar) {
 }
 
 TEST(Accounts, TheFileIsForItsOwnerAlone) {
-  const auto folder = std::filesystem::path(testing::TempDir()) / "luxrig_accounts";
+  const auto folder = std::filesystem::path(::testing::TempDir()) / "luxrig_accounts";
   std::filesystem::create_directories(folder);
   const auto file = folder / "accounts.json";
   ASSERT_TRUE(write_accounts(file, {}));

@@ -455,7 +455,7 @@ TEST_F(HttpApiTest, SecondServerOnTheSamePortIsRefused) {
 class AccountsTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder = std::filesystem::path(testing::TempDir()) / "luxrig_http_accounts";
+    folder = std::filesystem::path(::testing::TempDir()) / "luxrig_http_accounts";
     std::filesystem::create_directories(folder);
     DaemonSpec where = at_port(0);
     where.accounts_file = folder / "accounts.json";

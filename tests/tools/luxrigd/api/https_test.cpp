@@ -36,7 +36,7 @@ class HttpsTest : public ::testing::Test {
     std::ofstream(where.tls_key_file) << made.key;
     ::chmod(where.tls_key_file.c_str(), 0600);
   }
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "luxrig_https";
+  const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "luxrig_https";
   DaemonSpec where;
 };
 

@@ -23,7 +23,7 @@ class ChangeLogTest : public ::testing::Test {
     for (std::string line; std::getline(in, line);) out.push_back(line);
     return out;
   }
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "luxrig_change_log";
+  const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "luxrig_change_log";
 };
 
 TEST_F(ChangeLogTest, EachChangeIsALineAndTheNextDaemonKnowsThem) {
