@@ -1,7 +1,7 @@
 /** The daemon's HTTP API (tools/luxrigd/API.md) as types, and the reading of it. What arrives is not trusted:
  *  a number that is missing or not finite becomes undefined, a list that is no list becomes empty. */
 
-import {roleOf, type Role} from './roles';
+import {roleOf, type Role} from './role';
 
 export type Vec3 = readonly [number, number, number];
 

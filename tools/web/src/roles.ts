@@ -1,9 +1,7 @@
 /** What the person at this browser may do. The daemon decides; the page only does not offer what it would refuse. */
 
 import {element, setText} from './dom';
-
-export type Role = 'look'|'operate'|'configure';
-const ORDER: readonly Role[] = ['look', 'operate', 'configure'];
+import {ROLES, type Role} from './role';
 
 interface Gate {
   needs: Role;
@@ -13,11 +11,9 @@ const gates: Gate[] = [];
 // Until the daemon has said it, nothing is held back. null: nobody has logged in.
 let present: {role: Role; name: string}|null|undefined;
 
-export const roleOf = (text: string): Role => ORDER.find((role) => role === text) ?? 'look';
-
 function tell(gate: Gate): void {
   if (present === null) return gate.show(false, 'Log in first.');
-  const may = !present || ORDER.indexOf(present.role) >= ORDER.indexOf(gate.needs);
+  const may = !present || ROLES.indexOf(present.role) >= ROLES.indexOf(gate.needs);
   gate.show(may, may ? '' : `${present!.name} may ${present!.role}; this is for those who may ${gate.needs}.`);
 }
 
