@@ -26,7 +26,9 @@ class PageQuestionTest : public ::testing::Test {
       return board.answer(id, answer, now());
     };
     api = std::make_unique<HttpApi>(std::move(handlers), "/nonexistent");
-    const auto port = api->start(0);
+    DaemonSpec where;
+    where.http_port = 0;
+    const auto port = api->start(where);
     ASSERT_TRUE(port) << port.error().detail;
     const auto daemon = daemon_on(*port);
     ASSERT_TRUE(daemon) << daemon.error().detail;
