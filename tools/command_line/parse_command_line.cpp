@@ -104,12 +104,19 @@ std::string mend_of(const CLI::App& app, std::span<const std::string> words) {
       if (!value_inside) i += static_cast<std::size_t>(std::max(0, option->get_items_expected_min()));
       continue;
     }
+    int most = 0;
+    for (const CLI::Option* option : command->get_options())
+      if (option->get_positional()) most += option->get_items_expected_max();
     if (const auto commands = commands_of(*command); !commands.empty()) {
       const CLI::App* found = nullptr;
       std::vector<std::string> known;
       for (const CLI::App* one : commands) {
         if (one->get_name() == word) found = one;
         known.push_back(one->get_name());
+      }
+      if (found == nullptr && places < most) {  // its own, before the command: accounts RIG add
+        ++places;
+        continue;
       }
       if (found == nullptr) {
         return fmt::format("{}: there is no command \"{}\": {}", whole_name(*command), word, nearest_of(word, known));
@@ -118,9 +125,6 @@ std::string mend_of(const CLI::App& app, std::span<const std::string> words) {
       places = 0;
       continue;
     }
-    int most = 0;
-    for (const CLI::Option* option : command->get_options())
-      if (option->get_positional()) most += option->get_items_expected_max();
     if (++places > most) {
       return fmt::format("{0}: \"{1}\" is too much: `{0} --help` tells what it takes", whole_name(*command), word);
     }
