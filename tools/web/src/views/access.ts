@@ -53,6 +53,7 @@ export class AccessView {
     this.leave.addEventListener('click', () => void this.logOut());
     this.log =
         foldingCard('changes', 'Who changed what', this.count, this.who, this.leave, this.problem, list, this.none);
+    this.log.hidden = true;
     void this.look();
     setInterval(() => void this.showChanges(), CHANGES_EVERY_MS);
   }
@@ -76,6 +77,7 @@ export class AccessView {
     setText(this.who, session.open ? `You are ${session.name}, and may ${session.role}.` : '');
     setText(this.problem, session.problem);
     this.leave.hidden = !session.open || !session.login;
+    if (session.login || session.problem) this.log.hidden = false;  // else once there is a change to tell
     if (session.open)
       permit(session.role, session.name);
     else if (session.login)
@@ -90,6 +92,7 @@ export class AccessView {
     if (!changes) return;
     this.rows.show(changes.slice(-SHOWN).reverse());
     this.none.hidden = changes.length > 0;
+    if (changes.length) this.log.hidden = false;
     setText(this.count, changes.length ? `last: ${changes[changes.length - 1]!.who}` : 'nothing yet');
   }
 
