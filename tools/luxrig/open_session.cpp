@@ -3,10 +3,6 @@
 #include <fmt/format.h>
 
 #include <cstdio>
-#include <ctime>
-#include <iomanip>
-#include <limits>
-#include <sstream>
 #include <system_error>
 
 #include "core/estimation/calibration.h"
@@ -14,6 +10,7 @@
 #include "drivers/camera/camera_source.h"
 #include "drivers/registry.h"
 #include "tools/process/files.h"
+#include "tools/process/utc_time.h"
 
 namespace luxrig {
 namespace {
@@ -24,16 +21,6 @@ Checked<Rig> stated_rig(const std::filesystem::path& path) {
   if (auto problems = check_buses(*rig); !problems.empty()) return tl::unexpected(std::move(problems));
   if (auto problems = check_cameras(*rig); !problems.empty()) return tl::unexpected(std::move(problems));
   return rig;
-}
-
-/// Since an instant in UTC, as Calibration::made; infinite if it is none, or is yet to come.
-double hours_since(const std::string& instant) {
-  std::tm parts{};
-  std::istringstream text(instant);
-  text >> std::get_time(&parts, "%Y-%m-%dT%H:%M:%SZ");
-  const std::time_t then = text.fail() ? -1 : timegm(&parts), now = std::time(nullptr);
-  if (then < 0 || then > now) return std::numeric_limits<double>::infinity();
-  return std::difftime(now, then) / 3600;
 }
 
 }  // namespace

@@ -1,10 +1,8 @@
 #include "tools/luxrig/calibrate/keep_result.h"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <utility>
 
 #include "core/calibration/ageing.h"
@@ -13,15 +11,11 @@
 #include "core/output/dimming.h"
 #include "core/tasks/rig_version.h"
 #include "tools/process/files.h"
+#include "tools/process/utc_time.h"
 #include "tools/terminal/table.h"
 
 namespace luxrig {
 namespace {
-
-std::string utc_now() {
-  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now));
-}
 
 /// The old file stays beside the new one, under the time it was made.
 Result<void> keep_old(const std::filesystem::path& file) {

@@ -1,7 +1,6 @@
 #include "tools/luxrigd/state/change_log.h"
 
 #include <fcntl.h>
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -9,6 +8,7 @@
 #include <fstream>
 
 #include "core/fingerprint.h"
+#include "tools/process/utc_time.h"
 
 namespace luxrig {
 namespace {
@@ -76,8 +76,7 @@ void ChangeLog::read_newest() {
 }
 
 void ChangeLog::add(json change) {
-  change["at"] = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}",
-                             fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
+  change["at"] = utc_now();
   {
     const std::lock_guard lock(mutex_);
     if (left_out_ > 0 && waiting_.size() < kMostWaiting / 2) {
