@@ -96,17 +96,19 @@ void RequestReader::read_head() {
 
 void RequestReader::accept_body(std::size_t max_bytes) {
   if (at_ != At::decision) return;
-  if (const auto length = parser_->beast.content_length(); length && *length > max_bytes)
-    return refuse(413, kBodyTooLong);
+  if (!parser_->beast.chunked() && longest_body_bytes() > max_bytes) return refuse(413, kBodyTooLong);
   parser_->beast.body_limit(max_bytes);
   parser_->beast.eager(true);
-  if (max_bytes >= kKeptBytes && has_body()) parser_->beast.get().body().reserve(kNeverKeptBytes);
+  if (std::min<std::uint64_t>(max_bytes, longest_body_bytes()) >= kKeptBytes)
+    parser_->beast.get().body().reserve(kNeverKeptBytes);
   at_ = At::body;
   parse();
 }
 
-bool RequestReader::has_body() const {
-  return parser_->beast.chunked() || parser_->beast.content_length().value_or(0) > 0;
+bool RequestReader::has_body() const { return longest_body_bytes() > 0; }
+std::uint64_t RequestReader::longest_body_bytes() const {
+  if (parser_->beast.chunked()) return std::numeric_limits<std::uint64_t>::max();
+  return parser_->beast.content_length().value_or(0);
 }
 bool RequestReader::more_came() const { return !parser_->pending.empty(); }
 bool RequestReader::keep_alive() const { return parser_->beast.keep_alive(); }

@@ -2,6 +2,7 @@
 /// From bytes on the wire to one request, within limits.
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string_view>
 
@@ -30,6 +31,8 @@ class RequestReader {
 
   [[nodiscard]] bool begun() const { return begun_; }
   [[nodiscard]] bool has_body() const;  ///< from `decision` on
+  /// Its stated length, from `decision` on; in chunks it may be any.
+  [[nodiscard]] std::uint64_t longest_body_bytes() const;
   [[nodiscard]] bool keep_alive() const;
   /// There were bytes beyond this request: close the connection after the answer.
   [[nodiscard]] bool more_came() const;

@@ -266,7 +266,7 @@ class HttpServer::State::Connection : public std::enable_shared_from_this<Connec
     }
     if (events_ && !server_.stream_is_free(sender_.credential)) return http_refusal(503, "too many pages are open");
     const std::size_t most = route_ ? route_->max_body_bytes : 0;
-    const bool large = most > kLargeBodyBytes && reader_->has_body();
+    const bool large = std::min<std::uint64_t>(most, reader_->longest_body_bytes()) > kLargeBodyBytes;
     if (large && server_.large_bodies >= kMaxLargeBodies)
       return http_refusal(503, "others are sending files just now: try again");
     reader_->accept_body(most);
