@@ -172,9 +172,10 @@ export class SolveView {
     this.plan = plan;
     this.applied = false;
     this.before = undefined;
-    this.watts = await plans.fetchWatts();
     this.compare();
     this.result.hidden = false;
+    this.watts = await plans.fetchWatts();
+    if (this.plan === plan) this.compare();
   }
 
   private showJob(): void {
